@@ -216,7 +216,7 @@ def _checked_labels(labels):
         kind = "masked" if np.ma.is_masked(labels) else labels.dtype
         raise ValueError(
             f"Image.labels of type {kind}: must be whole numbers, one for each material; grey values ask for a "
-            "threshold first, above which all are of one label"
+            "threshold first, from which on all are of one label, as `read_image` and files of scenes take it"
         )
     return labels
 

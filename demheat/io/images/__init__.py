@@ -10,6 +10,9 @@ suffix      what is read
 .zarr       a folder with one (nx, ny, nz) array, read a layer of chunks at a time
 =========== ====================================================================================================
 
+MetaImages and NRRDs, and TIFFs as ImageJ and OME write them, may tell the edges of a voxel. On request a part is cut
+out, voxels are made fewer and larger, and grey values are told apart by thresholds: `changed`.
+
 What is mapped or in chunks passes slab by slab into the smallest type that holds the labels. What is packed is unpacked
 no further than the header's shape needs: `packed`.
 """
@@ -17,9 +20,11 @@ no further than the header's shape needs: `packed`.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from demheat.io.images import nrrd, raw, tiff, zarr
+from demheat.io.images.changed import changed
 from demheat.io.images.source import check_there
 from demheat.runtime.limits import check_free
 from demheat.runtime.paths import checked_path
@@ -29,7 +34,15 @@ from demheat.scene import Image, Material
 CHUNKED = ".zarr"
 
 
-def read_image(path, *, materials: Mapping[int, Material], voxel=None) -> Image:
+def read_image(
+    path,
+    *,
+    materials: Mapping[int, Material],
+    voxel=None,
+    crop: Sequence[Sequence[int]] | None = None,
+    coarsen: int = 1,
+    threshold: float | Sequence[float] | None = None,
+) -> Image:
     """Read an image.
 
     Parameters
@@ -39,7 +52,13 @@ def read_image(path, *, materials: Mapping[int, Material], voxel=None) -> Image:
     materials : mapping of int to Material
         Of each label.
     voxel : (3,) sequence of float, or float, m, optional
-        Edges of a voxel; needed unless a MetaImage or an NRRD tells them.
+        Edges of a voxel of the file; needed unless the file tells them.
+    crop : (3, 2) sequence of int, optional
+        First voxel and the one beyond the last along x, y and z.
+    coarsen : int
+        So many voxels along each axis become one: of grey values their mean, of labels the most frequent.
+    threshold : float or sequence of float, optional
+        Of grey values: below the first is label 0, from the first on label 1, from the second on label 2, ...
 
     Returns
     -------
@@ -80,8 +99,10 @@ def read_image(path, *, materials: Mapping[int, Material], voxel=None) -> Image:
     if voxel is None and own is None:
         raise ValueError(f"{path}: does not tell the edges of a voxel; voxel must be given, in metres")
     try:
+        labels = changed(labels, crop=crop, coarsen=coarsen, threshold=threshold)
         check_free(path, math.prod(labels.shape) * min(labels.dtype.itemsize, 2))
-        return Image(labels, own if voxel is None else voxel, materials)
+        image = Image(labels, own if voxel is None else voxel, materials)
+        return replace(image, voxel=tuple(coarsen * edge for edge in image.voxel)) if coarsen > 1 else image
     except ValueError as error:
         told = str(error)
         raise ValueError(told if told.startswith(str(path)) else f"{path}: {told}") from None

@@ -9,7 +9,7 @@ import warnings
 import numpy as np
 
 from demheat.io.images.packed import unpacked
-from demheat.io.images.source import check_there, mapped, told_in_one_line
+from demheat.io.images.source import UNITS, check_there, mapped, told_in_one_line
 from demheat.runtime.limits import check_free
 
 # Bytes of a header, and of a line that is passed over at once.
@@ -17,7 +17,6 @@ LONGEST = 2**20
 NEEDED = ("type", "dimension", "sizes", "encoding")
 PACKED = {"gzip": "gzip", "gz": "gzip", "bzip2": "bz2", "bz2": "bz2"}
 TEXT = ("ascii", "text", "txt")
-UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "\N{MICRO SIGN}m": 1e-6, "micron": 1e-6, "microns": 1e-6, "nm": 1e-9}
 
 
 def read(path):

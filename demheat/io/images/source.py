@@ -12,6 +12,17 @@ from demheat.io.words import nearest_file
 from demheat.runtime.limits import ALWAYS
 from demheat.scene.inputs import one_line
 
+# Lengths as formats have them, in metres.
+UNITS = {
+    "m": 1.0,
+    "cm": 1e-2,
+    "mm": 1e-3,
+    "um": 1e-6,
+    "\N{MICRO SIGN}m": 1e-6,
+    "micron": 1e-6,
+    "microns": 1e-6,
+    "nm": 1e-9,
+}
 # What an array takes while it is read, over what it needs itself.
 FACTOR = 4
 

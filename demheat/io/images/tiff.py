@@ -5,17 +5,20 @@ from __future__ import annotations
 import io
 import logging
 import math
+import re
 from contextlib import contextmanager
 
 import numpy as np
 
 from demheat.io.images.packed import INFLATION, beyond, check_expansion
-from demheat.io.images.source import mapped, most_of, told_in_one_line
+from demheat.io.images.source import UNITS, mapped, most_of, told_in_one_line
 from demheat.runtime.limits import check_free
 from demheat.scene.inputs import one_line
 
 # How pages may be packed, by the number that TIFF gives it; who unpacks the last is told how much there must be.
 PLAIN, ZLIB, LZMA, PACKBITS, LZW = 1, (8, 32946), 34925, 32773, 5
+# Edges of a voxel in the XML of OME: read as text, since nobody checked that it is XML.
+OME = re.compile(r'\bPhysical(Size[XYZ](?:Unit)?)="([^"<>]*)"')
 KNOWN = {PLAIN, *ZLIB, LZMA, PACKBITS, LZW}
 
 
@@ -35,10 +38,32 @@ def read(path):
             if not plain:
                 _check_packed(path, file.filehandle, stack)
             labels = None if plain else _by_pages(path, stack, shape)
+            voxel = _voxel(file)
             where = {"dtype": np.dtype(stack.dtype).newbyteorder(file.byteorder), "offset": stack.dataoffset}
         if complaints:
             raise ValueError(f"{path}: no TIFF, or a part of one: {complaints[0]}")
-        return (mapped(path, shape, **where) if plain else labels), None
+        return (mapped(path, shape, **where) if plain else labels), voxel
+
+
+def _voxel(file):
+    """Edges of a voxel in metres as OME or ImageJ tell them; None if any is missing or of no unit that is known."""
+    if file.is_ome:
+        found = dict(OME.findall(file.ome_metadata or ""))
+        told = [(found.get(f"Size{axis}"), found.get(f"Size{axis}Unit", "um")) for axis in "XYZ"]
+    elif file.is_imagej:
+        own, tags = file.imagej_metadata or {}, file.pages[0].tags
+        across = [tags[name].value if name in tags else (0, 1) for name in ("XResolution", "YResolution")]
+        told = [(below / above if above else None, own.get("unit")) for above, below in across]
+        told.append((own.get("spacing"), own.get("unit")))
+    else:
+        return None
+    edges = [float(length or 0) * UNITS.get(_plain(unit), 0.0) for length, unit in told]
+    return tuple(edges) if all(0 < edge < math.inf for edge in edges) else None
+
+
+def _plain(unit):
+    """A unit without ImageJ's escapes."""
+    return str(unit).replace("\\u00B5", "\N{MICRO SIGN}").replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}").strip()
 
 
 @contextmanager

@@ -19,6 +19,7 @@ material = "silica"
 file = "spheres.csv"
 unit = "mm"
 material = "silica"
+# radius_factor = 0.99, or join = true, where they overlap: smaller ones, or one body of each group
 
 [walls]  # or gradient_K_mm = [0, 1, 0] of a periodic cell
 "y-" = "25 degC"
@@ -31,7 +32,9 @@ Instead of size, matrix and inclusions an image may stand, see `demheat.io.image
 
 [image]
 file = "grains.tif"  # .npy, .tif, .mhd, .nrrd, beside this file
-voxel = "2 um"       # or voxel_um = [2, 2, 4]; MetaImages and NRRDs may tell it themselves
+voxel = "2 um"       # or voxel_um = [2, 2, 4]; MetaImages, NRRDs, TIFFs of ImageJ and OME may tell it themselves
+# crop = [[0, 100], [0, 100], [20, 120]], coarsen = 2, threshold = 112 (or several) of grey values
+# labels = {pore = [0, 3], rock = 255}    # of materials by their names
 
 [materials.0]
 conductivity = 0.2

@@ -10,7 +10,7 @@ from dataclasses import MISSING, fields
 from functools import partial
 from typing import NamedTuple
 
-from demheat.io.images import read_image
+from demheat.io.scenes.image_table import image_of
 from demheat.io.scenes.materials import made_material
 from demheat.io.scenes.source import Source
 from demheat.io.scenes.spheres import spheres_of
@@ -28,7 +28,6 @@ from demheat.io.scenes.units import (
 )
 from demheat.io.surfaces import UNITS, read_surface
 from demheat.io.words import as_toml, nearest
-from demheat.runtime.paths import checked_path
 from demheat.scene import (
     ROUND_AXES,
     WALLS,
@@ -88,7 +87,6 @@ KEYS = {"size": LENGTH, "gradient": GRADIENT, "initial": TEMPERATURE} | dict.fro
 )
 # What an image is itself.
 IMAGED = ("size", "matrix", "inclusions", "domain")
-LABEL = re.compile(r"-?\d+")
 NUMBERED = re.compile(r"(?:Scene\.)?inclusions\[(\d+)\](?:(?: and |, | is hidden by inclusions)\[(\d+)\])?")
 
 
@@ -138,29 +136,8 @@ def _imaged(table, materials):
         key = table.key(name, KEYS.get(name, PLAIN))
         if key is not None:
             raise table.error(key, ": with an image, which has it itself; must be left out")
-    labels = {}
-    for name, material in materials.items():
-        if not LABEL.fullmatch(name):
-            raise table.error(("materials", name), ": must be a label of the image, a whole number")
-        labels[int(name)] = material
-    own = table.table("image")
-    own.only({"file": PLAIN, "voxel": LENGTH})
-    path = checked_path(table.source.path.parent / own.text("file", ...))
-    try:
-        image = read_image(path, materials=labels, voxel=_voxel(own))
-    except (ValueError, ImportError) as error:
-        told = str(error).removeprefix(f"{path}: ").removeprefix("Image.")
-        key = "voxel" if told.startswith("voxel =") else "file"
-        raise type(error)(str(own.error(own.keys[key], f" = {as_toml(own.values[own.keys[key]])}: {told}"))) from None
+    image = image_of(table, materials)
     return _made_scene(table, [], partial(Scene.of_image, image, **_loaded(table)))
-
-
-def _voxel(table):
-    """Edges of a voxel: one length or three, or None."""
-    key = table.key("voxel", LENGTH)
-    if key is None or not isinstance(table.values[key], list):
-        return table.number("voxel", LENGTH)
-    return table.vector("voxel", LENGTH)
 
 
 def _placed_error(table, placed, error):
@@ -172,6 +149,8 @@ def _placed_error(table, placed, error):
     told = str(error)[found.end() :].lstrip(": ")
     if others:
         told = f"{found[0].removeprefix('Scene.')} {told} (the other stands in {others[0]})"
+        if "overlap partially" in told and any(", " in place for place in (first, *others)):
+            told += "; radius_factor = 0.99 or join = true may mend it"
     return ValueError(f"{first}: {told}")
 
 

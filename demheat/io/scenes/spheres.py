@@ -6,16 +6,17 @@ import csv
 import io
 from fractions import Fraction
 
+from demheat.io.scenes.joined import joined
 from demheat.io.scenes.source import text_of
 from demheat.io.scenes.units import LENGTH, PLAIN, RESISTANCE, factor_of, scaled
 from demheat.io.words import as_toml, nearest, nearest_file
 from demheat.runtime.limits import free_memory
 from demheat.runtime.paths import checked_path
-from demheat.scene import Sphere
+from demheat.scene import Sphere, Union
 
 TABLES = (".csv", ".tsv", ".txt")
 COLUMNS = ("x", "y", "z", "radius", "diameter", "material")
-KEYS = dict.fromkeys(("file", "unit", "material", "radius_factor", "step"), PLAIN)
+KEYS = dict.fromkeys(("file", "unit", "material", "radius_factor", "step", "join"), PLAIN)
 KEYS |= {"offset": LENGTH, "resistance": RESISTANCE}
 UNITS = tuple(LENGTH.suffixes)
 # Bytes of memory that a byte of a table takes as rows of text and spheres; what is always read.
@@ -24,8 +25,8 @@ OBJECTS, ALWAYS = 30, 2**24
 SAME = 1e-6
 
 
-def spheres_of(table, materials, default, size) -> list[tuple[Sphere, str]]:
-    """Spheres of an entry `file = ...`, each with the place where it stands.
+def spheres_of(table, materials, default, size) -> list[tuple[Sphere | Union, str]]:
+    """Spheres of an entry `file = ...`, each with the place where it stands; with `join` those that overlap as one.
 
     Coordinates of a packing count from the corner of its own box, which must be that of the scene unless an `offset`
     says where it lies; those of a file without a box count from the corner of the scene.
@@ -48,7 +49,11 @@ def spheres_of(table, materials, default, size) -> list[tuple[Sphere, str]]:
     rows = _rows(path, factor) if tabular else _packed(table, path, factor, step, size)
     if tabular and _is_cell(table):
         rows = _within(rows, offset, size)
-    return _made(table, rows, materials, default, offset, shrunk)
+    join, spheres = (
+        table.value("join", bool, "true or false", False),
+        _made(table, rows, materials, default, offset, shrunk),
+    )
+    return joined(spheres, size, periodic=_is_cell(table)) if join else spheres
 
 
 def _is_cell(table):

@@ -46,6 +46,7 @@ material = "glass"
 # [image]
 # file = "scan.tif"                   # .npy, .mhd, .nrrd, .zarr
 # voxel_um = 2
+# threshold = 112                     # of grey values: below is label 0; also crop, coarsen, labels = {pore = [0, 3]}
 
 [solve.fft]                           # methods for `solve` and `compare` where the command names none, their knobs
 voxels = 32

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from demheat import Image, Layer, Material, Scene, effective
+from demheat import Image, Layer, Material, Scene
 from demheat.scene import image as module
 from references import bounds, bracket, exact, fft, multipole, zeta
 
@@ -137,7 +137,7 @@ def test_bad_scenes(make, words):
 
 @pytest.mark.parametrize(
     "solve",
-    [exact.solve, multipole.solve, bounds.estimate, bracket.solve, effective, zeta.zeta2],
+    [exact.solve, multipole.solve, bounds.estimate, bracket.solve, zeta.zeta2],
     ids=lambda each: f"{each.__module__}.{each.__name__}",
 )
 def test_what_cannot_take_an_image_says_so(solve):
