@@ -32,7 +32,7 @@ WALLS = {
 EXCHANGE = "heat exchanged with surroundings is for the DEM and finite elements, in time also for series of slabs"
 IMAGE = "images are for FFT, finite elements, the DEM and bounds on voxels"
 TENSOR = "tensors are for steady states of finite elements and of voxels"
-PERFECT = "perfect conductors are for steady states of the DEM, finite elements, multipoles and exact forms"
+PERFECT = "perfect conductors are for steady states of the DEM, finite elements, FFT, multipoles and exact forms"
 DEPENDENCE = "that is for steady states of the DEM and finite elements"
 
 

@@ -117,6 +117,8 @@ def _pairs(centers, radii, period):
     back = shift[other] + (turns[one] if period is not None else 0)
     apart = np.linalg.norm(places[other] - at[one], axis=1)
     touch = (apart <= (radii[one] + radii[two]) * (1 + TOUCH)) & ((one < two) | ((one == two) & back.any(axis=1)))
+    # Not one in the other.
+    touch &= apart > np.abs(radii[one] - radii[two]) * (1 + TOUCH)
     return one[touch], two[touch], back[touch]
 
 

@@ -13,12 +13,11 @@ from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite, whole
 from demheat.scene.narrows import narrows
-from demheat.scene.perfect import as_good
 from demheat.tensor import axis_loads
 from references.fem.estimate import estimated, extrapolated
+from references.fem.good import check_perfect
 from references.fem.image import solved_image
 from references.fem.lookup import NodalField
-from references.fem.perfect import check_perfect
 from references.fem.system import solve_loads
 from references.mesh import make, split
 from references.mesh.sizes import checked_size
@@ -174,7 +173,7 @@ def _again(scene, tolerance, elements, **changed):
 def field_of(scene, mesh, solved, tolerance, estimator, extrapolator=None) -> Field:
     """The Field of nodal temperatures."""
     alone = one_blas_thread()
-    solution = NodalField(as_good(scene), mesh, solved.temperature, **_cut_off(scene, solved.bodies))
+    solution = NodalField(solved.shown or scene, mesh, solved.temperature, **_cut_off(scene, solved.bodies))
     mean_flux = alone(solution.mean_flux)()
     alone(_check_rounding)(solution, mean_flux, solved.wall_temperature, tolerance)
     fractions = np.bincount(mesh.phase, mesh.volumes, len(scene.materials)) / scene.volume

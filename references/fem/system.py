@@ -15,8 +15,9 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
-from demheat.scene.perfect import GOOD, as_good
-from references.fem import components, interfaces, perfect
+from demheat.scene import Scene
+from demheat.scene.perfect import as_good
+from references.fem import components, good, interfaces
 from references.fem.elements import assemble, assemble_loads, wall_weights
 from references.fem.medium import Medium
 from references.fem.multigrid import solve_free
@@ -38,6 +39,7 @@ class Solved(NamedTuple):
     wall_heat: dict[str, float]
     stats: dict[str, object]  # dict
     bodies: components.Bodies | None = None  # components.Bodies, or None: That pores leave; None if all phases conduct
+    shown: Scene | None = None  # Conductivities that fluxes are read with, if they are not the scene's own
 
 
 class Given(NamedTuple):
@@ -59,6 +61,7 @@ class _Assembled(NamedTuple):
     passing: np.ndarray
     pores: np.ndarray
     found: components.Bodies | None
+    own: np.ndarray | None  # Conductivity over the unit of elements in bodies of good conductors, if there are such
     assembly_s: float
 
 
@@ -80,7 +83,7 @@ def _solve_varying(scene, mesh, tolerance):
     kept = {}
 
     def solve(temperature, tolerance):
-        return _solve_linear([scene], mesh, tolerance, kept, temperature)[0]
+        return _solve_linear([scene], mesh, tolerance, kept, start=temperature)[0]
 
     return converged(solve, tolerance)
 
@@ -88,23 +91,26 @@ def _solve_varying(scene, mesh, tolerance):
 def solve_loads(scenes, mesh, tolerance) -> list[Solved]:
     """Nodal temperatures of one body under several loads: one matrix, and one multigrid where all hold the same nodes.
 
-    Pores cut off other bodies for each load: their matrices are their own.
+    Pores cut off other bodies for each load, and other good conductors span it: their matrices are their own.
     """
     if scenes[0].varies:
         return [_solve_varying(scene, mesh, tolerance) for scene in scenes]
-    if len(scenes) > 1 and not scenes[0].mean_conductivities.all():
+    joined = [good.find(scene, mesh) for scene in scenes]
+    if len(scenes) > 1 and (not scenes[0].mean_conductivities.all() or any(each is not None for each in joined)):
         return [solve_nodes(scene, mesh, tolerance) for scene in scenes]
-    return _solve_linear(scenes, mesh, tolerance, {})
+    if joined[0] is None:
+        return _solve_linear(scenes, mesh, tolerance, {})
+    return _solve_linear(scenes, mesh, tolerance, {}, joined=joined[0]) or _solve_linear(scenes, mesh, tolerance, {})
 
 
-def _solve_linear(scenes, mesh, tolerance, kept, start=None):
-    """Of each load; `start` has the temperatures at which all conducts, and from which the solution is improved."""
+def _solve_linear(scenes, mesh, tolerance, kept, *, start=None, joined=None):
+    """Of each load; `start` has the temperatures at which all conducts, and from which the solution is improved.
+
+    None if what is `joined` does not lead to a solution.
+    """
     begin, body = time.perf_counter(), as_good(scenes[0])
-    conductivity = body.mean_conductivities[mesh.phase]
+    conductivity, own = body.mean_conductivities[mesh.phase], None
     givens = [given_part(scene, mesh, conductivity > 0) for scene in scenes]
-    joined = [perfect.find(scene, mesh) for scene in scenes]
-    if joined[0] is not None:
-        givens = [perfect.known(*each) for each in zip(joined, scenes, givens, strict=True)]
     dof = twins(len(mesh.points), mesh.pairs)
     pores, found = conductivity == 0, None
     if pores.any():
@@ -113,16 +119,19 @@ def _solve_linear(scenes, mesh, tolerance, kept, start=None):
     passing, unit = conductivity > 0, conductivity.max()
     if unit == 0:
         return [_at_rest(scenes[0], mesh, givens[0], found)]
-    if joined[0] is not None:
-        conductivity, unit = np.where(joined[0].inside, 0.0, conductivity), body.mean_conductivities.max() / GOOD
+    if joined is not None:
+        givens, unit = [good.known(joined, scenes[0], givens[0])], conductivity[~joined.inside].max(initial=0) or unit
+        own, conductivity = (np.where(some, conductivity, 0.0) for some in (joined.inside, ~joined.inside))
     lifts = [given.lift for given in givens]
     matrix, loads = assemble_loads(mesh, conductivity / unit, dof, lifts, _medium(body, mesh, start))
     if mesh.faces is not None:
         matrix = (matrix + interfaces.exchange(mesh, dof) / unit).tocsr()
         loads = [load - _jumping(scenes[0], mesh, dof, lift) / unit for load, lift in zip(loads, lifts, strict=True)]
-    system = _Assembled(matrix, dof, unit, passing, pores, found, time.perf_counter() - begin)
-    each = zip(scenes, givens, loads, joined, strict=True)
-    return [_solved(one, mesh, system, tolerance, kept, start) for one in each]
+    own = None if own is None else own / unit
+    system = _Assembled(matrix, dof, unit, passing, pores, found, own, time.perf_counter() - begin)
+    each = zip(scenes, givens, loads, strict=True)
+    solved = [_solved(one, mesh, system, tolerance, kept, start, joined) for one in each]
+    return None if solved[0] is None else solved
 
 
 def _jumping(scene, mesh, dof, lift):
@@ -137,10 +146,10 @@ def _medium(scene, mesh, temperature):
     return Medium(scene, mesh, temperature) if scene.anisotropic or temperature is not None else None
 
 
-def _solved(one, mesh, system, tolerance, kept, start):
+def _solved(one, mesh, system, tolerance, kept, start, joined):
     """One load on a matrix; `kept` is what the solver keeps for the next one."""
-    begin, (scene, given, load, joined) = time.perf_counter(), one
-    matrix, dof, unit, passing, pores, found, assembly_s = system
+    begin, (scene, given, load) = time.perf_counter(), one
+    matrix, dof, unit, passing, pores, found, own, assembly_s = system
     robin, outside = _robin(scene, mesh, passing), scene.imposed_temperatures
     matrix = (matrix + robin.stiffness() / unit).tocsr() if robin.walls else matrix
     tied = robin.tangent(np.ones(len(load))).diagonal() + robin.stiffness().diagonal()
@@ -157,23 +166,26 @@ def _solved(one, mesh, system, tolerance, kept, start):
         imposed += (robin.constant(outside, given.level) - robin.stiffness() @ given.lift) / unit
     load += imposed
     fixed[bodies.pins] = True
-    if robin.radiates:
+    shown, times = good.bounded(joined, scene, mesh)
+    if joined is not None:
+        system = matrix, equations, own
+        apart = good.solve_joined(joined, mesh, dof, system, load, fixed, given.shares > 0, tolerance, kept)
+        if apart is None:
+            return None
+        correction, heat, stats = apart.y + times * apart.z, unit * apart.left, apart.stats
+    elif robin.radiates:
         body, known = (scene, robin, unit), given.lift + given.level
         correction, stats = radiating(mesh, matrix, load, fixed, dof, tolerance, known=known, body=body)
     elif start is not None:
         before = start - given.level - given.lift
         correction, stats = improved(mesh, matrix, load, fixed, dof, tolerance, start=before, kept=kept)
     else:
-        correction, stats = solve_free(mesh, equations, folded(load), fixed, dof, tolerance, kept=kept)
-    correction = correction if joined is None else joined.fold @ correction
+        correction, stats = solve_free(mesh, matrix, load, fixed, dof, tolerance, kept=kept)
     temperature = given.lift + correction[dof]
     temperature += given.level
-    heat = unit * (matrix @ correction - load) - robin.radiated(outside, temperature)
+    if joined is None:
+        heat = unit * (matrix @ correction - load) - robin.radiated(outside, temperature)
     stats |= {"islands": 0 if found is None else int(np.count_nonzero(~found.passing))}
-    if joined is not None:
-        rest, given_on, more = perfect.spread(joined, mesh, dof, -heat / unit, given.shares > 0, tolerance)
-        temperature, heat = temperature + rest / GOOD, heat + unit * given_on
-        stats["iterations"] += more["iterations"]
     if found is not None:
         components.settle(found, scene, mesh, temperature)
         shift, more = _pore_shift(mesh, pores, temperature - given.level, dof, given, found)
@@ -181,8 +193,9 @@ def _solved(one, mesh, system, tolerance, kept, start):
         stats["iterations"] += more["iterations"]
         stats["residual"] = max(stats["residual"], more["residual"])
     stats |= {"assembly_s": assembly_s, "solve_s": time.perf_counter() - begin}
-    shown = temperature if found is None else components.reached(found, scene, temperature)
-    return Solved(temperature, *at_walls(scene, given, shown, heat, robin.entering(outside, temperature)), stats, found)
+    reached = temperature if found is None else components.reached(found, scene, temperature)
+    walls = at_walls(scene, given, reached, heat, robin.entering(outside, temperature))
+    return Solved(temperature, *walls, stats, found, shown)
 
 
 def _robin(scene, mesh, passing):

@@ -47,7 +47,7 @@ def checked(scheme, rule, precision, tolerance, max_iterations, threads) -> Knob
 def check_load(scene: Scene) -> None:
     """Raise NotImplementedError if the load is another than those that are solved."""
     check_scene(scene)
-    takes = ("exchange", "anisotropy", "image", "resistance")
+    takes = ("exchange", "anisotropy", "image", "resistance", "perfect")
     scene.require("on voxels conductivities are constants", steady=True, takes=takes)
     scene.require(
         "FFT knows a periodic cell and two opposite walls with temperatures, the others insulated; only their "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
@@ -13,6 +14,7 @@ from demheat.runtime.deadline import budget
 from demheat.runtime.limits import check_memory
 from demheat.runtime.progress import announced
 from demheat.scene import Scene
+from demheat.scene.perfect import as_good
 from demheat.scene.turned import turned as turned_scene
 from demheat.tensor import axis_loads
 from references.fft import cg, eyre_milton
@@ -20,6 +22,7 @@ from references.fft.checks import PRECISIONS, check_grid, check_load, check_sche
 from references.fft.estimate import estimated, extrapolated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.memory import expected
+from references.fft.perfect import check_perfect, check_spans
 from references.fft.problem import SolvedGrid
 from references.fft.rules import warn_of_thin
 from references.fft.units import direction, linear_part, mean_flux, order_of, problem_of, units_of, wall_heat
@@ -140,6 +143,16 @@ def solve_axes(
 
 def _solved(scenes, voxels, knobs):
     """The Field of each of some scenes that differ in their loads only."""
+    if not scenes[0].perfect:
+        return _finite(scenes, voxels, knobs)
+    for scene in scenes:
+        check_perfect(scene, knobs.scheme, knobs.precision)
+    fields = _finite([as_good(scene) for scene in scenes], voxels, knobs, np.isinf(scenes[0].conductivities))
+    return [replace(field, scene=scene) for field, scene in zip(fields, scenes, strict=True)]
+
+
+def _finite(scenes, voxels, knobs, perfect=None):
+    """The same of finite conductivities, some of which stand for infinity."""
     grid, orders = grid_shape(scenes[0], voxels, USUAL), [order_of(scene) for scene in scenes]
     boxes = [turned_scene(scene, order) for scene, order in zip(scenes, orders, strict=True)]
     shapes = [tuple(grid[a] for a in order) for order in orders]
@@ -155,6 +168,9 @@ def _solved(scenes, voxels, knobs):
         painted = voxelise(boxes[0], shapes[0], laminate=knobs.rule != "plain")
         if scenes[0].inclusions:
             warn_of_thin(boxes[0], knobs.rule, shapes[0])
+        if perfect is not None:
+            for box, order in zip(boxes, orders, strict=True):
+                check_spans(box, perfect, _as(painted, orders[0], order).phase, linear_part(box)[0])
         return _fields(scenes, boxes, orders, painted, knobs, {"expected_mib": needed / MIB})
 
 
@@ -162,11 +178,16 @@ def _fields(scenes, boxes, orders, painted, knobs, said):
     """The fields on voxels that are painted; `said` is of their stats."""
     kept, fields = {}, []
     for scene, order, box in zip(scenes, orders, boxes, strict=True):
-        same = turned(painted, [orders[0].index(axis) for axis in order])
+        same = _as(painted, orders[0], order)
         # Only in a periodic cell is the load's axis any one.
         kept = kept if scene.periodic else {}
         fields.append(_loaded(scene, box, order, same, knobs, kept, said))
     return fields
+
+
+def _as(painted, before, order):
+    """Painted voxels with axes in another order than before."""
+    return turned(painted, [before.index(axis) for axis in order])
 
 
 def _loaded(scene, box, order, painted, knobs, kept, said):

@@ -44,7 +44,7 @@ def bodies(scene: Scene, voxels: Voxels, slope, *, linked: bool) -> Bodies:
     solid = voxels.conductivity[voxels.phase] > 0
     if len(voxels.cut) and not linked:
         solid.flat[voxels.cut] = voxels.tensor[:, :3].max(axis=1) > 0
-    found, count = _gathered(solid, below, scene.periodic, np.asarray(slope) * scene.size)
+    found, count = gathered(solid, below, scene.periodic, np.asarray(slope) * scene.size)
     low, high = np.zeros((2, count + 1), bool)
     if not scene.periodic:
         low[found.label[0][first]] = True
@@ -122,8 +122,8 @@ def _linked(scene, voxels):
     return below, passes[0][0], passes[0][-1]
 
 
-def _gathered(solid, below, periodic, jump):
-    """What the search finds, and the number of bodies."""
+def gathered(solid, below, periodic, jump):
+    """Bodies of solid voxels that open faces below them join, as the search finds them, and their number."""
     state = np.zeros(4, dtype=np.int64)
     found = kernels.Found(
         label=np.where(solid, np.int32(kernels.OPEN), np.int32(kernels.NONE)),

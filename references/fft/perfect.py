@@ -1,0 +1,82 @@
+"""Perfect conductors on voxels: as conductors `GOOD` times as good as the rest, where these are apart and do not span.
+
+That is a large number, not one unknown for each body: iterations go with its logarithm, five times as many as at a
+contrast of 100. What it lacks of infinity, 1e-8, is below what voxels lack.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from demheat.scene import Scene
+from demheat.scene.perfect import INFINITE, contacts
+from demheat.scene.resistances import joined
+from demheat.scene.shapes.base import TOUCH
+from references.voxels.bodies import gathered
+
+
+def check_perfect(scene: Scene, scheme: str, precision: str) -> None:
+    """Raise unless perfect conductors of a scene are known to a scheme."""
+    if not scene.perfect:
+        return
+    touching = contacts(scene)
+    if scheme == "eyre-milton":
+        scene.require(
+            "Eyre and Milton's scheme converges like the square root of the contrast, which is infinite; use scheme "
+            "'cg'",
+            takes=("resistance",),
+        )
+    text = "on voxels what is beside perfect conductors conducts alike all round"
+    scene.require(text, takes=("resistance", "exchange", "perfect"))
+    if precision != "float64":
+        raise NotImplementedError(
+            f"precision = {precision!r} has too few digits beside perfect conductors: must be 'float64'"
+        )
+    if touching:
+        raise NotImplementedError(
+            f"perfect spheres touch, {_named(touching[0][0] + 1)} among them: voxels see a gap; must be apart, or "
+            "resist"
+        )
+
+
+def check_spans(scene: Scene, perfect, phase, slope) -> None:
+    """Raise if perfect phases of a grid join two temperatures, or are too near to tell."""
+    inside, sides, slope = perfect[phase], joined(scene), np.asarray(slope)
+    below = []
+    for axis in range(3):
+        other = np.roll(phase, 1, axis)
+        both = inside & perfect[other] & (sides[phase] == sides[other])
+        if not scene.periodic:
+            both[(slice(None),) * axis + (0,)] = False
+        _check_apart(scene, np.unique(np.stack([phase[both], other[both]]), axis=1).T)
+        below.append(both)
+    found, count = gathered(inside, tuple(below), scene.periodic, slope * scene.size)
+    ends = [found.label[end][inside[end] & _reaching(scene, phase[end], end)] for end in (0, -1)]
+    spans = found.climbs[:count].any() if scene.periodic else slope[0] and len(np.intersect1d(*ends))
+    if spans:
+        raise ValueError(INFINITE)
+
+
+def _check_apart(scene, pairs):
+    parents = scene.parents()
+    for one, two in np.sort(pairs, axis=1).tolist():
+        if one != two and parents[two] != one:
+            raise NotImplementedError(
+                f"perfect conductors {_named(one)} and {_named(two)} touch, or their gap is thinner than a voxel: must "
+                "be apart, resist, or be more voxels"
+            )
+
+
+def _reaching(scene, phase, end):
+    """Where perfect phases of a plane of voxels at a wall across x meet it."""
+    meets = np.zeros(len(scene.materials), bool)
+    meets[0] = True
+    for number, shape in enumerate(scene.inclusions, start=1):
+        low, high = (each[0] for each in shape.bounds())
+        gap = low if end == 0 else scene.size[0] - high
+        meets[number] = gap <= TOUCH * scene.size[0]
+    return meets[phase]
+
+
+def _named(phase):
+    return f"Scene.inclusions[{phase - 1}]" if phase else "Scene.matrix"

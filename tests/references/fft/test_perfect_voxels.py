@@ -1,0 +1,94 @@
+"""Only here: perfect conductors on voxels: exact values, the limit of good ones, what spans and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat import Box, Cylinder, Layer, Material, Scene, Sphere
+from demheat.scene.perfect import INFINITE
+from references import fft
+from references.exact import lattice
+
+MATRIX, MIDDLE, PERFECT = 2.0, (0.5, 0.5, 0.5), Material(math.inf)
+X, Y, CELL = {"walls": {"x-": 20.0, "x+": 30.0}}, {"walls": {"y-": 20.0, "y+": 30.0}}, {"gradient": (10.0, 0.0, 0.0)}
+POINTS = np.random.default_rng(0).random((200, 3))
+pytestmark = pytest.mark.filterwarnings("ignore:gaps beside inclusions")
+
+
+def body(*shapes, matrix=MATRIX, **load):
+    return Scene((1.0, 1.0, 1.0), Material(matrix), list(shapes), **load)
+
+
+@pytest.mark.parametrize("load", [X, CELL], ids=["walls", "cell"])
+@pytest.mark.parametrize(("resistance", "expected"), [(0.2, 1.898010589), (0.0, 3.262566264)])
+def test_a_cubic_array(resistance, expected, load):
+    radius = lattice.radius("sc", 0.4)
+    field = fft.solve(body(Sphere(MIDDLE, radius, PERFECT, resistance=resistance * radius / MATRIX), **load), voxels=32)
+    # .15 and -.06 % were found: what voxels lack at a contrast of 1e4, too.
+    assert_allclose(field.conductivity / MATRIX, expected, rtol=3e-3)
+    assert field.scene.perfect
+    assert field.error.lower < MATRIX * expected < field.error.upper
+
+
+BODIES = {
+    "across faces": lambda k: body(Sphere((0.1, 0.9, 0.5), 0.4, k), **CELL),
+    "half at a wall": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k), **Y),
+    "held": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k), **X),
+    "layer that resists": lambda k: body(Layer(0, 0.3, 0.7, k, resistance=0.1), **CELL),
+    "a ball in a ball": lambda k: body(Sphere(MIDDLE, 0.4, k), Sphere(MIDDLE, 0.3, k), **X),
+    "beside a pore": lambda k: body(Sphere((0.27, 0.5, 0.5), 0.2, k), Sphere((0.75, 0.5, 0.5), 0.2, Material(0.0)), **X),
+}
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_the_limit_of_good_conductors(name):
+    perfect, good = (fft.solve(BODIES[name](Material(k)), voxels=16) for k in (math.inf, MATRIX * 1e6))
+    assert_allclose(perfect.mean_flux, good.mean_flux, rtol=0, atol=2e-5 * np.abs(good.mean_flux).max())
+    # Of 10 K: what the tolerance leaves.
+    assert_allclose(perfect.temperature_at(POINTS), good.temperature_at(POINTS), rtol=0, atol=2e-3)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        body(Layer(0, 0.3, 0.7, PERFECT), **Y),
+        body(Cylinder(MIDDLE, 0.2, (1, 0, 0), PERFECT), **CELL),
+        body(Cylinder(MIDDLE, 0.2, (0, 1, 0), PERFECT), **Y),
+        body(*(Sphere((x, 0.5, 0.5), 0.25, PERFECT) for x in (0.25, 0.75)), **X),
+        body(Sphere(MIDDLE, 0.3, Material(1.0)), matrix=math.inf, **X),
+    ],
+    ids=["layer along", "fibre in a cell", "fibre between walls", "chain", "matrix"],
+)
+def test_what_spans_is_infinite(scene):
+    with pytest.raises(ValueError, match=INFINITE):
+        fft.solve(scene, voxels=16)
+
+
+def test_what_ends_before_a_wall_does_not_span():
+    """Half a voxel before it: links see the gaps, 2 h of the matrix at either end of a fibre."""
+    field = fft.solve(body(Box(MIDDLE, (0.97, 1.0, 1.0), PERFECT), **X), voxels=16)
+    assert_allclose(field.conductivity, MATRIX / 0.03, rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("scene", "knobs"),
+    [
+        (body(*(Box((x, 0.5, 0.5), (0.4, 0.4, 0.4), PERFECT) for x in (0.3, 0.7)), **CELL), {}),
+        (body(*(Sphere((x, 0.5, 0.5), 0.25, PERFECT) for x in (0.25, 0.75)), **Y), {}),
+        (body(Sphere(MIDDLE, 0.3, PERFECT), **X), {"scheme": "eyre-milton"}),
+        (body(Sphere(MIDDLE, 0.3, PERFECT), **X), {"precision": "float32"}),
+    ],
+    ids=["boxes", "spheres", "eyre-milton", "single"],
+)
+def test_what_voxels_do_not_know_is_refused(scene, knobs):
+    with pytest.raises(NotImplementedError) as error:
+        fft.solve(scene, voxels=16, **knobs)
+    assert "\n" not in str(error.value)
+
+
+def test_all_axes():
+    fields = fft.solve_axes(body(Sphere((0.1, 0.9, 0.5), 0.3, PERFECT), **CELL), voxels=16)
+    # Offsets from the grid differ along the axes.
+    assert_allclose([f.conductivity for f in fields], fields[0].conductivity, rtol=1e-2)
