@@ -97,7 +97,7 @@ def test_a_file(tmp_path):
     assert "inf W/(m K)" in scene._repr_html_()
 
 
-TAKES = ("dem", "exact", "fft", "fem", "fem-p1", "fem-straight", "multipole")
+TAKES = ("dem", "exact", "fft", "fft-links", "fft-plain", "fem", "fem-p1", "fem-straight", "multipole")
 
 
 @pytest.mark.parametrize("name", [name for name in METHODS if name not in TAKES])

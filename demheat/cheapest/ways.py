@@ -31,7 +31,7 @@ KNOBS = {"fem": ("size", 1.0), "fft": ("voxels", -1.0), "dem": ("particles", -3.
 # What few methods take of a scene: those that are refined.
 TAKES = {
     "fem": ("resistance", "anisotropy", "dependence", "image", "perfect"),
-    "fft": ("resistance", "anisotropy", "image"),
+    "fft": ("resistance", "anisotropy", "image", "perfect"),
     "dem": ("resistance", "dependence", "image", "perfect"),
 }
 # Methods whose answers are extrapolated (`Field.extrapolated`), where their scene lets them: the interval of that is

@@ -38,7 +38,9 @@ BODIES = {
     "held": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k), **X),
     "layer that resists": lambda k: body(Layer(0, 0.3, 0.7, k, resistance=0.1), **CELL),
     "a ball in a ball": lambda k: body(Sphere(MIDDLE, 0.4, k), Sphere(MIDDLE, 0.3, k), **X),
-    "beside a pore": lambda k: body(Sphere((0.27, 0.5, 0.5), 0.2, k), Sphere((0.75, 0.5, 0.5), 0.2, Material(0.0)), **X),
+    "beside a pore": lambda k: body(
+        Sphere((0.27, 0.5, 0.5), 0.2, k), Sphere((0.75, 0.5, 0.5), 0.2, Material(0.0)), **X
+    ),
 }
 
 
