@@ -193,7 +193,7 @@ OTHERS = {
 def test_what_few_methods_take(name):
     scene = OTHERS[name]
     told = {way.method: way.refused for way in recommend(scene, 2e-2).ways}
-    assert (told["fft"] == "") == (name in ("tensor", "resistance"))
+    assert (told["fft"] == "") == (name != "k(T)")
     assert (told["dem"] == "") == (name != "tensor")
     found = effective(scene, accuracy=2e-2, method=("fft", "dem"))
     assert found.accuracy <= 2e-2 and not found.cut
