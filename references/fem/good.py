@@ -130,13 +130,13 @@ def known(joined: Joined, scene, given):
     return given._replace(lift=lift)
 
 
-def solve_joined(joined: Joined, mesh, dof, equations, load, fixed, held, tolerance, kept) -> Solved | None:
-    """Solve for loads at nodes, some of which are held, with one row for each body some of which are fixed.
+def solve_joined(joined: Joined, mesh, dof, equations, load, known, tolerance, kept) -> Solved | None:
+    """Solve for loads at nodes.
 
-    `equations` are the matrix of the rest on nodes, folded, and the conductivity of elements in bodies over its unit.
-    None if no rounds are enough.
+    `equations` are the matrix of the rest on nodes, the same folded, and the conductivity of elements in bodies over
+    its unit; `known` which rows of the folded one are fixed, and which nodes are held. None if no rounds are enough.
     """
-    matrix, small, own = equations
+    (matrix, small, own), (fixed, held) = equations, known
     inner, _ = assemble(mesh, own, dof, np.zeros(len(dof)))
     y, z, size, within = np.zeros(len(load)), np.zeros(len(load)), np.inf, {}
     least = float(own[own > 0].min(initial=np.inf))

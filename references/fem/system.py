@@ -168,8 +168,8 @@ def _solved(one, mesh, system, tolerance, kept, start, joined):
     fixed[bodies.pins] = True
     shown, times = good.bounded(joined, scene, mesh)
     if joined is not None:
-        system = matrix, equations, own
-        apart = good.solve_joined(joined, mesh, dof, system, load, fixed, given.shares > 0, tolerance, kept)
+        parts, known = (matrix, equations, own), (fixed, given.shares > 0)
+        apart = good.solve_joined(joined, mesh, dof, parts, load, known, tolerance, kept)
         if apart is None:
             return None
         correction, heat, stats = apart.y + times * apart.z, unit * apart.left, apart.stats
