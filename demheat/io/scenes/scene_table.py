@@ -148,7 +148,10 @@ def _placed_error(table, placed, error):
     first, *others = (placed[int(number)].place for number in found.groups() if number)
     told = str(error)[found.end() :].lstrip(": ")
     if others:
-        told = f"{found[0].removeprefix('Scene.')} {told} (the other stands in {others[0]})"
+        own, other = first.rpartition(", ")[0], others[0]
+        # Of the same entry of the file its place in the table is enough.
+        other = other.removeprefix(f"{own}, ") if own else other
+        told = f"{found[0].removeprefix('Scene.')} {told} (the other stands in {other})"
         if "overlap partially" in told and any(", " in place for place in (first, *others)):
             told += "; radius_factor = 0.99 or join = true may mend it"
     return ValueError(f"{first}: {told}")
