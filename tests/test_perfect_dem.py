@@ -141,13 +141,15 @@ def test_what_touches_is_one_body(name):
 
 
 @pytest.mark.parametrize("load", [X, Y, CELL, {"gradient": (0.0, 10.0, 0.0)}], ids=["x", "y", "cell x", "cell y"])
-def test_chains_are_the_limit_of_good_ones(load):
+def test_chains_are_more_than_good_ones(load):
+    """Heat finds its way through contacts in points as the logarithm of the contrast, at 1e12, too."""
+
     def chain(k):
         return body(*(Sphere((0.2 + 0.2 * n, 0.5, 0.5), 0.1, Material(k)) for n in range(3)), **load)
 
     perfect, good = (solve(chain(k), particles=3000) for k in (math.inf, MATRIX * 1e12))
-    # A contact that is narrow, and a contrast of 1e8 in the one beside 1e12 in the other.
-    assert_allclose(perfect.conductivity, good.conductivity, rtol=1e-6)
+    # Of the load along the chain 1.5 % were found, across it nothing.
+    assert good.conductivity * (1 - 1e-6) < perfect.conductivity < 1.03 * good.conductivity
     # Of 10 K; through the contacts heat finds its way at a contrast of 1e8: 6e-4 K were found.
     assert np.ptp(perfect.temperature_at([[0.2, 0.5, 0.5], [0.4, 0.5, 0.5], [0.6, 0.5, 0.5]])) < 2e-3
 
@@ -221,3 +223,10 @@ def test_a_gap_to_a_wall_that_cells_close():
     else:
         # Gaps of 1e-4 on either side, .25 wide: that much heat at least.
         assert field.conductivity > 0.25 * MATRIX / 2e-4
+
+
+def test_a_narrow_gap_with_many_particles():
+    """The equations of nodes are aimed anew until what is left is small beside what passes: one aim missed it."""
+    field = solve(body(Sphere(MIDDLE, 0.5 / 1.005, PERFECT), **CELL), particles=30_000)
+    # By lattice sums; a gap of a hundredth is some particles' fifths wide.
+    assert_allclose(field.conductivity / MATRIX, 7.65173, rtol=1e-2)

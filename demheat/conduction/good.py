@@ -29,6 +29,8 @@ from demheat.scene.resistances import between
 APART = 1e5
 # Rounds at most, and what each must leave of the last one's residual: mostly it takes off three digits or more.
 ROUNDS, SLOW = 12, 0.3
+# How often one round alone is aimed anew: what passes is often far less than what is left at first.
+AGAIN = 5
 
 
 class Bodies(NamedTuple):
@@ -61,6 +63,8 @@ def bodies_of(network, scene, inside) -> Bodies:
     if resistance is not None:
         unlike = np.flatnonzero(within & (phase[row] != phase[other]))
         within[unlike] = resistance(phase[row[unlike]], phase[other[unlike]]) == 0
+    links, feet = network.over or (np.empty(0, int),) * 2
+    within[links] = False
     alone = network._replace(conductance=np.where(within, network.conductance, 0.0))
     gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
     found, count = components.gathered(alone, inside, gradient * network.size)
@@ -68,6 +72,7 @@ def bodies_of(network, scene, inside) -> Bodies:
     for name, value in scene.wall_temperatures.items():
         here = (network.wall_side == SIDES.index(name)) & (network.wall_conductance > 0)
         here &= inside[network.wall_particle]
+        here[feet] = False
         at_wall |= here
         met = np.unique(found.label[network.wall_particle[here]])
         low[met], high[met] = np.minimum(low[met], value), np.maximum(high[met], value)
@@ -105,12 +110,15 @@ def solve_good(network, scene, bodies, *, solver, tolerance, max_iterations, rou
     done = 0
     while done < rounds:
         done += 1
-        left = _left(parts, y, z)
-        # What passes is known only once the solution nearly is.
-        aim = 0.5 * tolerance * max(_passing(parts, y + z), _norm(left)), max_iterations
-        heat = np.where(parts.known, 0.0, np.bincount(parts.node, left, len(parts.known)))
-        change, count, left = _solved(kept, "y", parts.links, parts.diagonal, heat, chosen, *aim)
-        y, total = y + change[parts.node], total + count
+        for _ in range(AGAIN if rounds == 1 else 1):
+            left = _left(parts, y, z)
+            # What passes is known only once the solution nearly is.
+            aim = 0.5 * tolerance * max(_passing(parts, y + z), _norm(left)), max_iterations
+            heat = np.where(parts.known, 0.0, np.bincount(parts.node, left, len(parts.known)))
+            change, count, left = _solved(kept, "y", parts.links, parts.diagonal, heat, chosen, *aim)
+            y, total = y + change[parts.node], total + count
+            if left <= tolerance * _passing(parts, y + z) or total >= max_iterations:
+                break
         heat = _spread(_left(parts, y, z), bodies, parts.inner_diagonal)
         change, count, _ = _solved(kept, "z", parts.inner, parts.inner_diagonal, heat, chosen, *aim)
         z, total = z + change, total + count

@@ -10,12 +10,11 @@ from functools import partial
 import numpy as np
 
 from demheat.conduction.steady import HIGH_CONTRAST, Unsolved, contrast_of
-from demheat.dem.gaps import left_out
 from demheat.dem.options import Particles
 from demheat.error import LEVELS, Estimate, Fine, Refinement, beside, by_refinement, conductivity_of, misplaced, quietly
 from demheat.extrapolation import Extrapolated, Limit, by_extrapolation
 from demheat.laws import Calibrated, Laguerre, Platonic
-from demheat.network.bridges import matter
+from demheat.network.bridges import needed
 from demheat.runtime.progress import stage
 from demheat.scene import Scene
 from demheat.scene.edges import SMOOTH, edge_order
@@ -177,7 +176,7 @@ def extrapolator_of(law: Laguerre | Calibrated | Platonic, wanted: Particles, an
 def _limit(field, *, law, wanted, answer) -> Extrapolated:
     """By runs with an eighth and a sixty-fourth of the particles."""
     number = _number(wanted)
-    if left_out(field) and matter(field.scene):
+    if needed(field.stats["packing"], field.scene):
         raise NotImplementedError(
             "Field.extrapolated: facets cross gaps without particles; Field.error has an interval"
         )

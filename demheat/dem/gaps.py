@@ -1,7 +1,8 @@
 """How far an answer may be off where bodies touch, or nearly: facets cross the gaps in which no twins fit.
 
-Between good conductors fewer particles hardly tell: what crosses goes on growing with their contrast. The truth lies
-between the answer and that of the same particles where what lies in the gaps conducts instead.
+Between bad conductors they carry too little, and fewer particles hardly tell. The truth lies between the answer and
+that of the same particles where what lies in the gaps conducts instead. Between good ones they carry what the gaps let
+pass, which is known to a part: the same particles with so much less of it tell what that is worth, either way.
 """
 
 from __future__ import annotations
@@ -13,29 +14,29 @@ import numpy as np
 
 from demheat.error import Estimate, conductivity_of, quietly
 from demheat.field import Field
-from demheat.network.bridges import filled, matter
+from demheat.network.bridges import bad, filled, loosened, needed
 
 
 def reaching(estimate: Callable, field: Field, *, answer: Callable) -> Estimate:
     """An estimate that reaches to what is so if gaps without twins are filled, where that matters."""
     found = estimate(field)
-    if not (left_out(field) and matter(field.scene)):
+    if not needed(field.stats["packing"], field.scene):
         return found
-    other = quietly(lambda change: answer(change=change), filled)
+    other = quietly(lambda change: answer(change=change), _changed)
     ends = [k for k in (conductivity_of(field), conductivity_of(other)) if math.isfinite(k)]
+    # Between bad conductors the truth is on the one side of the answer; what a gap lets pass may be more, or less.
+    apart = 0.0 if bad(field.scene) else max(ends) - min(ends)
     flux = float(np.linalg.norm(field.mean_flux - other.mean_flux))
     return found._replace(
-        lower=min([found.lower, *ends]),
-        upper=max([found.upper, *ends]),
-        flux=max(found.flux, flux),
+        lower=min([found.lower - apart, *ends]),
+        upper=max([found.upper + apart, *ends]),
+        flux=found.flux + flux,
         temperature=max(found.temperature, _apart(field, other)),
     )
 
 
-def left_out(field) -> bool:
-    """Whether there are gaps without twins."""
-    packing = field.stats["packing"]
-    return packing.get("of", packing).get("pairsleft_out", 0) > 0
+def _changed(network, scene):
+    return loosened(filled(network, scene), scene)
 
 
 def _apart(field, other):

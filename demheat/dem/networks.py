@@ -9,6 +9,7 @@ import numpy as np
 from demheat.dem.calibration import calibration, calibration_scene, cube_like
 from demheat.laws import LAWS, ON_FACETS, Calibrated, Laguerre, Platonic, check_numbers
 from demheat.network.base import Network
+from demheat.network.bridges import bridged, needed
 from demheat.network.calibrated import contact_facets
 from demheat.network.interface import connect
 from demheat.network.laguerre import drop_empty_cells, laguerre
@@ -93,13 +94,21 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
 
 
 def networks_of(
-    scenes: Sequence[Scene], packing: Packing, law: Laguerre | Calibrated | Platonic, *, seed: int = 0
+    scenes: Sequence[Scene],
+    packing: Packing,
+    law: Laguerre | Calibrated | Platonic,
+    *,
+    seed: int = 0,
+    perfect: np.ndarray | None = None,
 ) -> list[Network]:
-    """The networks of one body under several loads: tessellated once, and one network where the loads do not matter."""
+    """The networks of one body under several loads: tessellated once, and one network where the loads do not matter.
+
+    Phases that stand for perfect conductors stay joined where they touch.
+    """
     cut = _tessellated(scenes[0], packing, law, seed)
     if law.factor is not None:
-        return [_connected(scenes[0], law, *cut)] * len(scenes)
-    return [_connected(scene, law, *cut) for scene in scenes]
+        return [_connected(scenes[0], law, *cut, perfect)] * len(scenes)
+    return [_connected(scene, law, *cut, perfect) for scene in scenes]
 
 
 def _tessellated(scene, packing, law, seed):
@@ -122,7 +131,7 @@ def _tessellated(scene, packing, law, seed):
     return *_facets(packing, law, known), time.perf_counter() - begun
 
 
-def _connected(scene, law, packing, facets, tessellation_s):
+def _connected(scene, law, packing, facets, tessellation_s, perfect=None):
     """The network of facets in a scene."""
     begun = time.perf_counter()
     factor = _calibrated(scene, packing, facets, law) if law.factor is None else law.factor
@@ -140,7 +149,8 @@ def _connected(scene, law, packing, facets, tessellation_s):
         network = connect(packing, facets, phase, scene.conductivities, **how)
     spent = {"tessellation_s": tessellation_s, "network_s": time.perf_counter() - begun}
     said = {"law": law.name, "calibration": factor, "packing": packing.provenance}
-    return network._replace(stats=said | spent)
+    network = network._replace(stats=said | spent)
+    return bridged(network, scene, perfect) if law.conforming and needed(packing.provenance, scene) else network
 
 
 _CONTACTS = {Calibrated: contact_facets, Platonic: platonic_facets}

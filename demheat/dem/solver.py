@@ -228,7 +228,8 @@ def _answers(scenes, law, wanted, *, solver, tolerance, max_iterations=MOST_ITER
         packing = wanted.packed(scenes[0], law)
         spent = {"expected_mib": needed / MIB, "packing_s": time.perf_counter() - begun}
         helper.join(cells)
-        networks = networks_of([as_good(each) for each in scenes], packing, law, seed=wanted.seed)
+        how = {"seed": wanted.seed, "perfect": np.array([each.perfect for each in scenes[0].materials])}
+        networks = networks_of([as_good(each) for each in scenes], packing, law, **how)
         del packing  # twins may have been added to a copy
         if change is not None:
             networks = [change(network, scene) for network, scene in zip(networks, scenes, strict=True)]

@@ -28,15 +28,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import xlogy, zeta
 
+from demheat.network.gap_law import POINT, RIM, gap_conductance  # noqa: F401 (pairs and tests know them from here)
 from demheat.scene.inputs import LEAST, MOST, finite
-
-# How lines of flow draw together below a point contact, and beside a wide contact.
-POINT, RIM = 2.0 * float(np.exp(np.euler_gamma)), float(np.expm1(7.0 * zeta(3.0) / np.pi**2))
-# The closed form is a ratio of differences where its two roots meet: they are held so far apart, as a part of the
-# larger one. That changes p, and so the conductance, by a quarter of the square, 3e-11; rounding leaves 1e-11.
-APART = 1e-5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -239,22 +233,6 @@ def resistivity(first, second):
 def contact_conductance(radius, resistivity):
     """Conductance of contacts, 4 a / (1/k_1 + 1/k_2)."""
     return 4.0 * radius / resistivity
-
-
-def gap_conductance(width, contact, disc, curvature, resistivity, medium):
-    """Conductance of the ring of medium around a contact, or between two near grains; see the module."""
-    inner, outer, s = np.asarray(contact, dtype=float), np.maximum(disc, contact), 0.5 / (curvature * medium)
-    p = np.where(inner > 0, 0.0, np.maximum(width, 0.0)) / medium
-    q = POINT * resistivity + s * RIM * inner
-    square = q**2 - 4.0 * p * s
-    least = (APART * q) ** 2
-    square = np.where(np.abs(square) < least, np.where(square < 0, -least, least), square)
-    # Roots below zero are a complex pair: the same form, whose imaginary parts cancel.
-    u = (q + np.sqrt(square.astype(complex))) / (2.0 * s)
-    v = np.where(square > 0, p / (s * u), np.conj(u))
-    # Of a point contact v ln v is 0.
-    parts = [root * np.log(outer + root) - xlogy(root, inner + root) for root in (u, v)]
-    return np.real(2.0 * np.pi / s * (parts[0] - parts[1]) / (u - v))
 
 
 def check_conductivity(name, value) -> float:

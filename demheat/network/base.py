@@ -67,6 +67,8 @@ class Network(NamedTuple):
         What a Field says of it: law, calibration (C_t), tessellation_s, network_s and packing, how that was made.
     whole : bool
         Links that should conduct do; if not, bodies that no heat passes are looked for though all phases conduct.
+    over : two int arrays, optional
+        Numbers of links, and of wall facets, that join no body: they conduct what a gap lets pass.
     """
 
     centers: np.ndarray
@@ -90,6 +92,7 @@ class Network(NamedTuple):
     cells: bool = True
     stats: dict | None = None
     whole: bool = True
+    over: tuple[np.ndarray, np.ndarray] | None = None
 
 
 def wall_normals(walls):

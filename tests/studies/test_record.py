@@ -76,6 +76,8 @@ NO_ROWS = {
     "demheat/scene/shapes/union.py": BODIES,
     "references/bracket/voxels/tensor.py": FORMS,
     "demheat/network/bridges.py": TOUCHING,
+    "demheat/network/gap_links.py": TOUCHING,
+    "demheat/network/narrowest.py": TOUCHING,
     "demheat/splitting.py": FORMS,
     "references/exact/inclined.py": FORMS,
     "references/multipole/at_rest.py": FORMS,

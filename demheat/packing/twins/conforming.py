@@ -124,6 +124,7 @@ def conformed(
     # Radical facets do not change when all weights grow alike: make the least one positive.
     raised = np.concatenate([kept, weights]) + max(0.0, 0.01 * radius**2 - kept.min(initial=np.inf))
     counts = {"twins": number, "even_twins": tally.even, "pairs_left_out": left_out}
+    counts["least_gap"] = LEAST_SPACING * float(radius)
     counts["shells"] = int(np.count_nonzero(np.isfinite(interfaces.stacks.spacing)))
     provenance = packing.provenance | counts
     centers = np.concatenate([packing.centers[keep], centers])
