@@ -7,13 +7,12 @@ carry too little, and what the answer is if the matrix lies in their place tells
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from demheat.network.base import SIDES, Network, image_shifts, link_distances, row_numbers
-from demheat.network.gap_links import across
+from demheat.network.gap_links import Facets, across
 from demheat.scene.resistances import between as resisting
 from demheat.scene.shapes.base import TOUCH
 
@@ -39,13 +38,7 @@ class _Group(NamedTuple):
 
     which: np.ndarray  # (n,) int array: Links, or wall facets
     phases: tuple  # Of the bodies, or of the one before a wall
-    points: np.ndarray  # (n, 3) float array, m: On the facets, as seen from one copy of the first body
-    area: np.ndarray  # (n,) float array, m2
-    between: Callable  # See `narrowest`
-    medium: float  # W/(m K)
-    resistivity: float  # m K/W
-    resistance: float  # m2 K/W: Of the surfaces
-    taken: np.ndarray  # (2, n) float array, W/K: What passes from the particle on either side into its body
+    facets: Facets
 
 
 def matter(scene) -> bool:
@@ -88,8 +81,8 @@ def bridged(network: Network, scene, perfect=None) -> Network:
     over = [[np.empty(0, int)], [np.empty(0, int)]]
     for kind, (into, groups, narrow) in enumerate(gaps):
         for group in groups:
-            own, width = across(into[group.which], *group[2:], narrow)
-            touching = group.resistance == 0 and width <= TOUCH * max(scene.size)
+            own, width = across(into[group.which], group.facets, narrow)
+            touching = group.facets.resistance == 0 and width <= TOUCH * max(scene.size)
             if not (touching and perfect[list(group.phases)].all()):
                 into[group.which] = own
                 over[kind].append(group.which)
@@ -161,7 +154,7 @@ def _links(network, scene, links):
         own = 0.0 if resists is None else float(resists([first], [second])[0])
         ends = np.stack([taken[row[which]], taken[network.indices[links[which]]]])
         given = points[which], network.area[links[which]], between, float(k[parent[first]]), resistivity, own
-        yield _Group(links[which], (first, second), *given, ends)
+        yield _Group(links[which], (first, second), Facets(*given, ends))
 
 
 def _taken(network, links):
@@ -194,9 +187,8 @@ def _feet(network, scene, feet):
         between = _before(scene.inclusions[first - 1], wall // 2, size[wall // 2] if wall % 2 else 0.0)
         area, own = network.wall_area[feet[which]], float(scene.resistances[first])
         ends = np.stack([taken[particle[which]], np.full(len(which), np.inf)])
-        yield _Group(
-            feet[which], (first,), points[which], area, between, float(k[parent[first]]), 1.0 / k[first], own, ends
-        )
+        given = points[which], area, between, float(k[parent[first]]), 1.0 / k[first], own
+        yield _Group(feet[which], (first,), Facets(*given, ends))
 
 
 def _before(body, axis, position):

@@ -11,6 +11,9 @@ Between surfaces that are parallel, along a line at least, facets between the bo
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 
 from demheat.network.gap_law import gap_conductance
@@ -24,19 +27,25 @@ EVEN = 1e-3
 LEAST = 0.3
 
 
-def across(conductance, points, area, between, medium, resistivity, resistance, taken, least):
+class Facets(NamedTuple):
+    """Facets over one gap."""
+
+    points: np.ndarray  # (n, 3) float array, m: On the facets, as seen from one copy of the first body
+    area: np.ndarray  # (n,) float array, m2
+    between: Callable  # See `narrowest`
+    medium: float  # W/(m K): Of what lies in the gap
+    resistivity: float  # m K/W: 1/k of the one body and of the other
+    resistance: float  # m2 K/W: Of the surfaces
+    taken: np.ndarray  # (2, n) float array, W/K: What passes from the particle on either side into its body
+
+
+def across(conductance, facets, least):
     """Conductance of each facet over a gap, (n,) float array, W/K, and how wide the gap is, m; NaN if it is not known.
 
-    conductance : (n,) float array, W/K; of the facets if nothing lies in the gap
-    points : (n, 3) float array, m; on the facets
-    area : (n,) float array, m2
-    between : see `narrowest`
-    medium : float, W/(m K); of what lies in the gap
-    resistivity : float, m K/W; 1/k of the one body and of the other
-    resistance : float, m2 K/W; of the surfaces, that of `conductance`, too
-    taken : (2, n) float array, W/K; what passes from the particles of each facet into the bodies
+    conductance : (n,) float array, W/K; of the facets if nothing lies in the gap but what surfaces resist
     least : float, m; width of a gap that has twins
     """
+    points, area, between, medium, resistivity, resistance, taken = facets
     one, two = between(points)[0]
     gap = narrowest(between, points[np.argmin(one + two)], least)
     if gap is None:

@@ -11,7 +11,7 @@ from demheat.dem import networks
 from demheat.dem.networks import network_of
 from demheat.network.base import HERE, image_shifts
 from demheat.network.bridges import bridged, filled, matter
-from demheat.network.gap_links import across
+from demheat.network.gap_links import Facets, across
 from demheat.network.narrowest import narrowest
 from demheat.packing.tile import tiled
 from demheat.scene import Ellipsoid
@@ -120,7 +120,9 @@ def test_what_a_gap_lets_pass():
     points, area = rim * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1), np.full(count, 1e-6)
     taken, width, medium = np.full((2, count), 1e3), 1e-4, 2.0
     least = width + rim**2
-    found, told = across(np.full(count, 1e9), points, area, spheres(2 + width, 1.0), medium, 1e-12, 0.0, taken, least)
+    found, told = across(
+        np.full(count, 1e9), Facets(points, area, spheres(2 + width, 1.0), medium, 1e-12, 0.0, taken), least
+    )
     r = (np.arange(100_000) + 0.5) / 100_000 * rim
     exact = np.sum(2 * math.pi * r * medium * (1 / (width + r**2) - 1 / least)) * rim / 100_000
     # The parabola of the width is the spheres' to a curvature's worth of the gap, 1e-4, and of the rim's square.
@@ -128,7 +130,9 @@ def test_what_a_gap_lets_pass():
     assert_allclose(told, width, rtol=1e-9)
 
     # What resists is as much of the matrix: a gap as much wider, to the rim.
-    found, _ = across(np.full(count, 1e9), points, area, spheres(2 + width, 1.0), medium, 1e-12, 1e-3, taken, least)
+    found, _ = across(
+        np.full(count, 1e9), Facets(points, area, spheres(2 + width, 1.0), medium, 1e-12, 1e-3, taken), least
+    )
     exact = np.sum(2 * math.pi * r * medium * (1 / (width + 2e-3 + r**2) - 1 / (least + 2e-3))) * rim / 100_000
     assert_allclose(found.sum() - medium * area.sum() / (least + 2e-3), exact, rtol=3e-3)
 
@@ -136,7 +140,7 @@ def test_what_a_gap_lets_pass():
         up = np.tile([0.0, 0, 1], (len(points), 1))
         return (points[:, 2] + 0.01, 0.02 - points[:, 2]), (up, -up)
 
-    found, told = across(np.full(count, 1e-3), points, area, plates, medium, 1e-12, 0.0, taken, least)
+    found, told = across(np.full(count, 1e-3), Facets(points, area, plates, medium, 1e-12, 0.0, taken), least)
     assert_allclose(found, 1 / (1 / 1e-3 + 0.03 / (medium * area)), rtol=1e-12)
     assert_allclose(told, 0.03, rtol=1e-12)
 
