@@ -34,7 +34,7 @@ def test_what_comments_offer_is_valid(tmp_path, monkeypatch, capsys):
     assert len(offered) >= 6
     (tmp_path / "beads.csv").write_text("x_mm,y_mm,z_mm,radius_mm\n0.1,0.1,0.1,0.05\n", encoding="utf-8")
     for line in offered:
-        if line.startswith(('file = "scan', "voxel", "domain", "material")):
+        if line.startswith(('file = "scan', "voxel", "threshold", "domain", "material")):
             continue
         table = "[[inclusions]]\nmaterial = 'glass'\n" if line.startswith("file") else ""
         changed = text.replace("# " + line, table + line, 1)
