@@ -10,7 +10,8 @@ A study is a module with
 - `claims(df)`, pairs of a sentence with a value and a limit; `PAPER`, what the paper prints;
 - optionally `plot(df)`, a figure where one says more than the table: without, it is one of the claims; `VALUES(case)`,
   true for the cases of which nobody asks what they cost: their rows have none, and are made side by side;
-  `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`, sentences below it
+  `warm_up(**case)`, untimed; `again(**case)`, of a row that is made for its values alone what is no matter of costs,
+  where not all of `run` is; `table(df)`, what to print, with its docstring as caption; `notes(df)`, sentences below it
   that are made of the rows; `words(df)`, what other pages say of it; `TIMEOUT`, seconds per row;
   `BY_ITSELF`, parameters of which no value's rows are borne out by another's (`groups.KINDS`);
   `TOLERANCES`, by columns how near values must come that are made again (`tolerance.TOLERANCES`), and `COMPARED_AS`, of
@@ -210,7 +211,7 @@ def compute_row(study, case, *, warm=True):
         if warm and hasattr(study, "warm_up"):
             study.warm_up(**case)
         with counted() as beside:
-            metrics, cost = _quietly_measured(study, case) if warm else measured(study.run, **case)
+            metrics, cost = _quietly_measured(study, case) if warm else measured(_for_values(study), **case)
     except NotImplementedError as error:
         result = {"status": "unsupported", "note": str(error)}
     except Exception as error:
@@ -228,6 +229,11 @@ def compute_row(study, case, *, warm=True):
             for name in {*cost_columns(study, result), *COST, "beside"} & set(result):
                 del result[name]
     return {**row, **result, **row, **provenance(study)}
+
+
+def _for_values(study):
+    """What makes a row whose costs do not count: of a search, which goes by costs, what of it does not."""
+    return getattr(study, "again", study.run)
 
 
 def _quietly_measured(study, case):

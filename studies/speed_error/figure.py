@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from studies.common.steady_scenes import STEADY_TITLES
 from studies.harness.figures import BLACK, GREY, look
 from studies.speed_error import means
 from studies.speed_error.scenes import IN_TIME, STEADY, TUNED
@@ -16,18 +17,7 @@ FLUXES = ("third", "83 spheres")
 STAR = "*: constants of the DEM were found on this body, or on it at other contrasts"
 # Below this errors are those of the linear solvers.
 LEAST = 1e-5
-TITLES = {
-    "third": "sphere, f = .155, contrast 10",
-    "third at 0.01": "the same, contrast .01",
-    "third at 1000": "the same, contrast 1000",
-    "third at infinity": "the same, contrast 1e6",
-    "half": "sphere, f = .5, contrast 10",
-    "half at 100": "the same, contrast 100",
-    "thin shell": "sphere in a thin shell",
-    "polydisperse": "24 spheres, radii 1 to 3",
-    "83 spheres": "83 spheres, f = .2",
-    "1000 spheres": "1000 spheres, f = .2",
-    "laminate": "laminate off the grid",
+TITLES = STEADY_TITLES | {
     "slab": "slab in time (temperature)",
     "ball": "ball in time (temperature)",
     "beam": "beam in time (temperature)",

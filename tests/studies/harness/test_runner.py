@@ -45,6 +45,19 @@ def test_a_row_that_this_code_has_made_again_holds(tiny):
     assert tiny.made() == ["plain", "second"]
 
 
+def test_a_row_for_its_values_alone_is_what_the_study_makes_again(tiny, monkeypatch):
+    """A search goes by costs: what of it does not is `again`; a row with costs is made by `run`."""
+    for variable in ("NUMBA_THREADING_LAYER", "OMP_WAIT_POLICY"):
+        monkeypatch.setenv(variable, "")
+    again = "def again(name, x):\n    return {'square': x * x + 1}\n\ndef claims(df):"
+    tiny.write(**{"def claims(df):": again})
+    study = runner.load(tiny.name)
+    row = runner.compute_row(study, study.CASES[0], warm=False)
+    assert (row["square"], "layer" in row) == (3.25, False)
+    row = runner.compute_row(study, study.CASES[0])
+    assert (row["square"], "layer" in row) == (2.25, True)
+
+
 @pytest.mark.parametrize("column", provenance.SAME)
 def test_another_machine_threads_or_versions_invalidate(tiny, column):
     tiny.made()

@@ -1,0 +1,105 @@
+"""The fair frontier: what an accuracy costs, by every method at its best.
+
+Each row is a search: one way (a method with one rule, or by itself) on one scene walks up its knob in steps that cost
+about one and a half times as much, halves between neighbours that a target lies between until they are within 1.2 times
+in cost, and runs again, in turns, what decides. A value reaches a target if its error and those up to the second finer
+step are within it, so that a change of sign wins nothing. Meshing, painting, packing and the coarser runs of an
+extrapolation count, and so does asking at points. Targets are 3 to .003 % of the conductivity, and of the temperature
+(over its span) and the flux (over its mean), root mean squares at 200 random points. Scenes are the steady ones of
+`speed_error`, marked where constants of the DEM were found on them, and twelve that nothing was ever tuned on. What is
+true is known in closed form, by multipoles, or by two methods that close in on the same; a target is judged where that
+is known three times better. A search ends where its seconds do (a column of the row), or where the next target would
+take over two minutes or 8 GiB.
+
+Costs are those of a quiet machine, or none are stored: `python -m studies run frontier --out results --force`.
+"""
+
+from studies.frontier.cases import QUICK_SECONDS, all_cases
+
+CASES = list(all_cases())
+PAPER = {}
+TIMEOUT = 900.0
+# A search repeats what decides by itself.
+REPEATS = 1
+# Rows of one way on one scene tell of no other.
+BY_ITSELF = ("way", "scene")
+# Which values were tried goes by what they cost, and so does all that is made of them; what is true is no row's own.
+COSTS = (
+    "true_k",
+    "true_off",
+    "true_by",
+    "trail",
+    "conductivity",
+    "extrapolated",
+    "temperature",
+    "flux",
+    "ended",
+    "tried",
+)
+
+
+def QUICK(case):
+    """The short searches."""
+    return case["seconds"] == QUICK_SECONDS
+
+
+def run(scene, way, seconds, method):
+    """Search, and find again what stands for the row."""
+    from studies.frontier import rows
+
+    return rows.at_point(scene, way) | rows.searched(scene, way, seconds)
+
+
+def again(scene, way, seconds, method):
+    """What of a row is no matter of costs: the conductivity at one value of the knob."""
+    from studies.frontier import rows
+
+    return rows.at_point(scene, way)
+
+
+def warm_up(scene, way, seconds, method):
+    """Load and compile the solver; work out what is true."""
+    from studies.frontier import rows
+
+    rows.warm_up(scene, way)
+
+
+def claims(df):
+    """Who was expected to win, and how far ways differ at one value of their knobs.
+
+    The guesses were set before any search, and what half of the scenes may differ by once errors at these values had
+    been looked at on some of them.
+    """
+    from studies.frontier.verdicts import all_claims
+
+    return all_claims(df)
+
+
+def table(df):
+    """The cheapest way for any shape to each accuracy of the conductivity, in processor seconds, and the next method.
+
+    Methods tie where their runs scatter by as much as their costs differ, or where these are within 1.2 times, as
+    values of a knob are tried no nearer. "-": nobody gets there within the seconds of the search. *: constants of the
+    DEM were found on this body, or on it at other contrasts.
+    """
+    from studies.frontier import tables
+
+    return tables.lines(df)
+
+
+def notes(df):
+    """Who wins, in words made of the rows."""
+    from studies.frontier import means
+
+    if not means.searched(df):
+        yield "No search has been run on a quiet machine yet: rows hold a conductivity at one value each, and no costs."
+        return
+    for quantity, target in (("conductivity", 1.0), ("conductivity", 0.1), ("conductivity", 0.01), ("flux", 1.0)):
+        yield means.in_words(df, quantity, target)
+
+
+def plot(df):
+    """Cost over error, a panel for each scene."""
+    from studies.frontier.figure import draw
+
+    return draw(df)

@@ -1,0 +1,59 @@
+"""Which searches there are, and how many processor seconds each may take."""
+
+from __future__ import annotations
+
+from studies.frontier.scenes import SCENES
+from studies.frontier.ways import WAYS
+
+# Processor seconds of a search, of a scene that is named, else of any.
+USUAL, BUDGET = 22.0, {"1000 spheres": 60.0, "5000 spheres": 80.0, "laminate": 5.0, "image": 8.0, "thin shell": 12.0}
+# Of a quick run, beside the others.
+QUICK_SECONDS, QUICK_SCENES, QUICK_WAYS = (
+    4.0,
+    ("third", "83 spheres", "fibre at 50"),
+    ("dem", "fem", "fft", "fft-loose"),
+)
+# Where a way says nothing, or nothing else than another: layers are exact by any, an image has no rules, perfect
+# conductors few methods.
+RULES = ("fem-p1", "fft-laminate", "fft-links", "fft-em")
+LEFT_OUT = {
+    "laminate": RULES,
+    "image": ("fft", "fft-loose", *RULES),
+    "infinite": ("fft-loose", *RULES),
+    "gyroid": ("fft-em",),
+    # Elements around a thousand spheres take more memory than there is.
+    "1000 spheres": ("fem", "fem-p1", "fft-em"),
+    "5000 spheres": ("fem", *RULES),
+}
+DEM_LIMIT = ("half", "half at 100", "83 spheres", "unequal, f = .5", "infinite")
+ONLY_SPHERES = (
+    *("third", "third at 0.01", "third at 1000", "third at infinity", "half", "half at 100", "polydisperse"),
+    *("83 spheres", "1000 spheres", "unequal, f = .5", "30 at 0.001", "infinite", "resistance", "box of 1:1:4"),
+    "5000 spheres",
+)
+
+
+def all_cases():
+    """Short searches of few scenes, and all others."""
+    for scene in QUICK_SCENES:
+        yield from (_case(scene, way, QUICK_SECONDS) for way in QUICK_WAYS)
+    for scene in SCENES:
+        for way, how in WAYS.items():
+            if _fits(way, how, scene):
+                yield _case(scene, way, BUDGET.get(scene, USUAL))
+
+
+def _fits(way, how, scene):
+    """Whether a way says anything of a scene."""
+    if (how.spheres and scene not in ONLY_SPHERES) or (how.knob == "parts" and scene != "image"):
+        return False
+    return way not in LEFT_OUT.get(scene, ()) and (way != "dem-limit" or scene in DEM_LIMIT)
+
+
+def _case(scene, way, seconds):
+    return {"scene": scene, "way": way, "seconds": seconds, "method": WAYS[way].method}
+
+
+def foreseen():
+    """Minutes that all searches take at most, on two processors of which each search uses about one and a half."""
+    return sum(case["seconds"] for case in all_cases()) / 60

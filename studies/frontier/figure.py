@@ -1,0 +1,81 @@
+"""Cost over error, a panel for each scene: each method at its best, the frontier broad, ties grey."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from studies.frontier import means
+from studies.frontier.scenes import TITLES, TUNED
+from studies.frontier.search import TARGETS
+from studies.harness.figures import GREY, look
+
+COLUMNS = 6
+FAMILIES = {"dem": "DEM", "fem": "FEM", "fft": "FFT", "multipole": "multipoles (spheres only)"}
+# Broad line of the frontier, thin ones of methods.
+BROAD, THIN = 7.0, 1.4
+
+
+def draw(df):
+    """All panels."""
+    from matplotlib import pyplot
+
+    scenes = means.scenes_of(df)
+    rows = max(1, math.ceil(len(scenes) / COLUMNS))
+    columns = min(COLUMNS, max(1, len(scenes)))
+    figure, grid = pyplot.subplots(
+        rows, columns, figsize=(2.9 * columns, 1.2 + 2.5 * rows), squeeze=False, sharex=True, sharey=True
+    )
+    for axes, scene in zip(grid.flat, scenes, strict=False):
+        _panel(axes, df, scene)
+    for axes in grid.flat[len(scenes) :]:
+        axes.set_visible(False)
+    grid[0, 0].set(xscale="log", yscale="log", xlim=(5.0, 0.002), ylim=(3e-3, 200.0))
+    grid[0, 0].set_xticks([1, 0.1, 0.01], ["1", ".1", ".01"])
+    for axes in grid[:, 0]:
+        axes.set_ylabel("CPU time, s")
+    for axes in grid.flat[max(0, len(scenes) - columns) : len(scenes)]:
+        axes.set_xlabel("error of the conductivity, %")
+        axes.tick_params(labelbottom=True)
+    found = {}
+    for axes in grid.flat:
+        found |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=5)
+    figure.suptitle(_headline(df) if means.searched(df) else "No search has been run on a quiet machine yet")
+    return figure
+
+
+def _panel(axes, df, scene):
+    every = {target: means.reached(df, scene, "conductivity", target, any_shape=False) for target in TARGETS}
+    for name, label in FAMILIES.items():
+        cheapest = {
+            target: min((e.cpu_s for e in ways if e.family == name), default=np.nan) for target, ways in every.items()
+        }
+        style = look(name, label=label, markersize=3.5, linewidth=THIN, linestyle="-", zorder=3)
+        axes.plot(list(cheapest), list(cheapest.values()), **style)
+    for target in TARGETS:
+        best = means.best(df, scene, "conductivity", target)
+        if best is None:
+            continue
+        tie = len(best.tied) > 1
+        colour = GREY if tie else look(best.first.family)["color"]
+        axes.plot(
+            [target / 1.6, target * 1.6], [best.first.cpu_s] * 2, color=colour, linewidth=BROAD, alpha=0.45, zorder=2
+        )
+        if tie:
+            axes.axvspan(target / 1.7, target * 1.7, color=GREY, alpha=0.18, linewidth=0, label="tie", zorder=0)
+    axes.set_title(f"{TITLES[scene]}{' *' if scene in TUNED else ''}", fontsize=9)
+
+
+def _headline(df):
+    scenes = means.scenes_of(df)
+    parts = []
+    for target in (1.0, 0.1, 0.01):
+        found = means.wins(df, "conductivity", target, scenes)
+        said = [f"{FAMILIES[name].split()[0]} {len(found[name])}" for name in ("dem", "fem", "fft") if name in found]
+        parts.append(f"{target:g} %: {', '.join(said) or 'nobody'}")
+    return (
+        f"Cheapest method for any shape, of {len(scenes)} scenes (ties count for both)  -  {'  -  '.join(parts)}\n"
+        "*: constants of the DEM were found on this body, or on it at other contrasts"
+    )

@@ -1,0 +1,135 @@
+"""Who gets to an accuracy at least cost, read off the rows; what the scatter of costs cannot tell apart is a tie."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from studies.frontier.scenes import HELD_BACK, SCENES, TUNED
+from studies.frontier.search import TARGETS
+from studies.frontier.ways import NEAR, WAYS
+
+# Of a row that is there, by what is compared; an extrapolated conductivity is a conductivity.
+COLUMNS = {"conductivity": ("conductivity", "extrapolated"), "temperature": ("temperature",), "flux": ("flux",)}
+
+
+class Reached(NamedTuple):
+    """One way to one target of one scene."""
+
+    way: str
+    extrapolated: bool
+    cpu_s: float
+    spread: float
+    value: float
+    error: float
+
+    @property
+    def family(self):
+        """The method, whatever its rule."""
+        return WAYS[self.way].method
+
+    @property
+    def title(self):
+        """Of tables."""
+        return f"{WAYS[self.way].title}{', extrapolated' if self.extrapolated else ''}"
+
+
+class Best(NamedTuple):
+    """The cheapest way to a target, what ties with it, and the next method that does not."""
+
+    first: Reached
+    tied: tuple
+    next: Reached | None
+
+
+def searched(df) -> bool:
+    """Whether rows hold more than what a replay makes again."""
+    return "trail" in df and bool(df["trail"].notna().any())
+
+
+def longest(df):
+    """Of each scene and way the search that was given most."""
+    if "seconds" not in df or not len(df):
+        return df
+    return df.sort_values("seconds", kind="stable").groupby(["scene", "way"], sort=False).tail(1)
+
+
+def reached(df, scene, quantity, target, *, any_shape=True):
+    """All ways that get to a target, the cheapest first."""
+    found = []
+    for row in longest(df[df["scene"] == scene]).to_dict("records"):
+        if any_shape and WAYS[row["way"]].spheres:
+            continue
+        for column in COLUMNS[quantity]:
+            cost = row.get(f"{column}_{target:g}_s", np.nan)
+            if cost == cost:
+                told = _told(row, column, target)
+                found.append(Reached(row["way"], column == "extrapolated", cost, told[5] or 0.0, told[0], told[4]))
+    return sorted(found, key=lambda each: each.cpu_s)
+
+
+def _told(row, column, target):
+    told = row.get(column)
+    told = json.loads(told).get(f"{target:g}") if isinstance(told, str) else None
+    return told if isinstance(told, list) else [np.nan] * 7
+
+
+def best(df, scene, quantity, target, *, any_shape=True):
+    """Who is the cheapest; None where nobody gets there."""
+    ways = reached(df, scene, quantity, target, any_shape=any_shape)
+    if not ways:
+        return None
+    tied = tuple(each for each in _by_family(ways) if alike(ways[0], each))
+    names = {each.family for each in tied}
+    others = [each for each in ways if each.family not in names]
+    return Best(ways[0], tied, others[0] if others else None)
+
+
+def _by_family(ways):
+    """Of each method its cheapest rule."""
+    found: dict = {}
+    for each in ways:
+        found.setdefault(each.family, each)
+    return list(found.values())
+
+
+def alike(one: Reached, other: Reached) -> bool:
+    """Whether runs scatter by as much as two costs differ; values of a knob are tried no nearer than NEAR anyway."""
+    return other.cpu_s <= one.cpu_s * max(NEAR, (1 + one.spread) * (1 + other.spread))
+
+
+def wins(df, quantity, target, scenes) -> Mapping[str, list[str]]:
+    """Scenes that each method is the cheapest on, by its name; of ties both, and those of nobody by an empty one."""
+    found: dict = {}
+    for scene in scenes:
+        who = best(df, scene, quantity, target)
+        for name in [""] if who is None else [each.family for each in who.tied]:
+            found.setdefault(name, []).append(scene)
+    return found
+
+
+def scenes_of(df, *, held_back=False):
+    """Scenes of the rows, in order."""
+    there = set(df["scene"])
+    return [scene for scene in (HELD_BACK if held_back else SCENES) if scene in there]
+
+
+def starred(scene):
+    """A star stands at scenes on which constants of the DEM were found, or on their body at another contrast."""
+    return f"{scene} *" if scene in TUNED else scene
+
+
+def in_words(df, quantity, target):
+    """Who wins on how many scenes, as a sentence."""
+    scenes = scenes_of(df)
+    found = wins(df, quantity, target, scenes)
+    named = {"dem": "DEM", "fem": "FEM", "fft": "FFT", "": "nobody"}
+    parts = [f"{named[name]} on {len(each)} ({', '.join(map(starred, each))})" for name, each in found.items()]
+    head = f"{target:g} % of the {quantity} costs least, of {len(scenes)} scenes and with ties counted for both"
+    return f"{head}, by {'; '.join(parts)}."
+
+
+__all__ = ["TARGETS", "best", "in_words", "longest", "reached", "scenes_of", "starred", "wins"]

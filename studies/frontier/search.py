@@ -1,0 +1,218 @@
+"""One way's cheapest values of its knob for each accuracy: walked up, halved between neighbours, and run again.
+
+A value *reaches* a target if its error is within it, and so are those of all finer ones tried, two steps of the walk at
+least: a change of sign wins nothing.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from studies.frontier.ways import NEAR, Way, between, growth, value_at
+
+TARGETS = (3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 0.003)  # per cent
+QUANTITIES = ("conductivity", "extrapolated", "temperature", "flux")
+# Processor seconds and MiB beyond which nobody waits.
+MOST_S, MOST_MIB = 120.0, 8192.0
+# Steps of the walk beyond a value that must be within the target, too.
+FINER = 2
+# Runs at values that decide.
+RUNS = 3
+# Parts of a row's budget after which the walk, and halving, end.
+WALK, HALVE = 0.5, 0.7
+# Steps of which the slope of errors over costs is taken, and the least that is believed.
+SLOPE, LEAST = 6, 0.15
+# Halves between two neighbours at most; steps of the walk at most.
+HALVES, LONGEST = 3, 60
+# A step is worth walking if it is expected to cost so much more; and how many are taken at once where one cost so much.
+GROWN, STRIDES = 1.2, ((1.2, 1), (1.1, 2), (0.0, 4))
+
+
+@dataclass
+class Point:
+    """What was found at one value: errors, %, and costs, by quantity."""
+
+    value: float
+    errors: dict
+    costs: dict  # of lists of (cpu_s, wall_s, MiB), a run each
+    unknowns: int
+    walked: bool
+
+    def error_of(self, quantity):
+        """Per cent; not-a-number if nobody asked."""
+        return self.errors.get(quantity, math.nan)
+
+    def cost(self, quantity="conductivity"):
+        """Processor seconds, median of the runs."""
+        return statistics.median(each[0] for each in self.costs[quantity])
+
+    def spread(self, quantity):
+        """Of these over their median; not-a-number of one run."""
+        seconds = [each[0] for each in self.costs[quantity]]
+        return (max(seconds) - min(seconds)) / statistics.median(seconds) if len(seconds) > 1 else math.nan
+
+
+@dataclass
+class Trail:
+    """All that was tried of a way."""
+
+    points: list = field(default_factory=list)
+    spent: float = 0.0
+    ended: str = ""
+
+    def add(self, point):
+        """Keep a point in the order of values that get finer."""
+        self.points.append(point)
+        self.spent += sum(each[0] for each in point.costs["all"])
+
+
+def search(way: Way, run: Callable, *, budget: float, judged: Callable) -> Trail:
+    """Try values of a way's knob; `run(value, quantities)` makes a Point, `judged(quantity, target)` what counts."""
+    trail = Trail()
+    _walk(way, run, trail, budget, judged)
+    finest = way.knob == "size"
+    trail.points.sort(key=lambda point: -point.value if finest else point.value)
+    _halve(way, run, trail, budget, judged)
+    _repeat(run, trail, budget, judged)
+    return trail
+
+
+def _walk(way, run, trail, budget, judged):
+    number, last = 0, None
+    while number < LONGEST:
+        value = value_at(way, number)
+        number += 1
+        if last is not None and growth(way, last.value, value) < GROWN:
+            continue
+        ahead = _next_cost(trail)
+        if ahead > MOST_S or trail.spent + ahead > WALK * budget:
+            trail.ended = "budget"
+            return
+        try:
+            point = run(value, QUANTITIES)
+        except (MemoryError, TimeoutError, RuntimeError, ValueError) as error:
+            if not trail.points and isinstance(error, (ValueError, RuntimeError)) and number < LONGEST // 4:
+                # Too coarse for the scene.
+                continue
+            trail.ended = " ".join(str(error).split())[:120]
+            return
+        point.walked = True
+        trail.add(point)
+        if last is not None:
+            number += _stride(point.cost() / last.cost()) - 1
+        last = point
+        if max(each[2] for each in point.costs["all"]) > MOST_MIB / 2:
+            trail.ended = "memory"
+            return
+        if not _sought(trail, judged):
+            trail.ended = "done"
+            return
+
+
+def _stride(grown):
+    """Steps to take at once, where one of them hardly costs more, as what is paid for each inclusion is most of it."""
+    return next(stride for least, stride in STRIDES if grown >= least)
+
+
+def _next_cost(trail):
+    """What the next step is expected to cost with all that is asked of it."""
+    walked = [sum(each[0] for each in point.costs["all"]) for point in trail.points]
+    if len(walked) < 2:
+        return 0.0
+    return walked[-1] * min(max(walked[-1] / walked[-2], 1.1), 3.0)
+
+
+def _sought(trail, judged):
+    """Whether a target is not reached yet that the next steps may reach."""
+    for quantity in QUANTITIES:
+        for target in TARGETS:
+            if not judged(quantity, target) or reached(trail.points, quantity, target) is not None:
+                continue
+            if not math.isfinite(trail.points[-1].error_of(quantity)) and len(trail.points) > 3:
+                continue
+            if foreseen(trail.points, quantity, target) <= MOST_S:
+                return True
+    return False
+
+
+def reached(points, quantity, target):
+    """Place of the first point that is within a target with all up to the second finer step of the walk, or None."""
+    within = [point.error_of(quantity) <= target for point in points]
+    for place in range(len(points)):
+        finer = [number for number in range(place + 1, len(points)) if points[number].walked][:FINER]
+        if len(finer) == FINER and all(within[place : finer[-1] + 1]):
+            return place
+    return None
+
+
+def foreseen(points, quantity, target):
+    """Processor seconds that a target should take, by how errors have fallen with what they cost; 0 if few tell."""
+    seen = [
+        (point.cost(quantity), point.errors[quantity]) for point in points if point.walked and _finite(point, quantity)
+    ]
+    if not seen:
+        return math.inf if len(points) > 3 else 0.0
+    if len(seen) < SLOPE:
+        return 0.0
+    # The largest error from each on: what crosses zero says nothing.
+    worst = [max(error for _, error in seen[k:]) for k in range(len(seen))]
+    if worst[-1] <= target:
+        return seen[-1][0]
+    one, other = len(seen) - SLOPE, len(seen) - 1
+    grown, fallen = seen[other][0] / seen[one][0], worst[one] / worst[other]
+    slope = math.log(max(fallen, 1.0)) / math.log(max(grown, 1.01))
+    if slope < LEAST:
+        return math.inf
+    return seen[-1][0] * (worst[-1] / target) ** (1 / slope)
+
+
+def _finite(point, quantity):
+    return math.isfinite(point.error_of(quantity))
+
+
+def deciding(points, judged):
+    """Places of points that reach a target first, with the quantities that they do so of."""
+    found = {}
+    for quantity in QUANTITIES:
+        for target in TARGETS:
+            place = reached(points, quantity, target) if judged(quantity, target) else None
+            if place is not None:
+                found.setdefault(place, []).append(quantity)
+    return found
+
+
+def _halve(way, run, trail, budget, judged):
+    """Put values between neighbours of which one reaches a target and the other does not, cheap ones first."""
+    for _ in range(HALVES):
+        for place in sorted(deciding(trail.points, judged), reverse=True):
+            if place == 0:
+                continue
+            low, high = trail.points[place - 1], trail.points[place]
+            value = between(way, low.value, high.value) if way.knob != "size" else between(way, high.value, low.value)
+            near = high.cost() <= NEAR * low.cost()
+            if near or value is None or trail.spent + high.cost("all") > HALVE * budget:
+                continue
+            try:
+                point = run(value, QUANTITIES)
+            except (MemoryError, TimeoutError, RuntimeError, ValueError):
+                continue
+            point.walked = False
+            trail.add(point)
+            trail.points.insert(place, trail.points.pop())
+
+
+def _repeat(run, trail, budget, judged):
+    """Run what decides again and again, one after the other."""
+    found = deciding(trail.points, judged)
+    for _ in range(RUNS - 1):
+        for place in sorted(found):
+            point, quantities = trail.points[place], tuple(dict.fromkeys(found[place]))
+            if trail.spent + point.cost("all") > budget:
+                continue
+            again = run(point.value, quantities)
+            trail.spent += sum(each[0] for each in again.costs["all"])
+            for name, costs in again.costs.items():
+                point.costs[name] += costs

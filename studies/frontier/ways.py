@@ -1,0 +1,106 @@
+"""The ways to a conductivity: a method with what it fixes, its knob, and the values of it that are walked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+# From one value of a knob to the next the cost grows by about so much; neighbours nearer than NEAR are near enough.
+STEP, NEAR = 1.5, 1.2
+# Voxels along the longest side: halves and quarters of them are whole, and transforms of their lengths are fast.
+PRIMES, MULTIPLE = (2, 3, 5, 7), 4
+# Beyond these nothing is tried, whatever the budget.
+MOST_VOXELS, MOST_DEGREE = 640, 60
+
+
+# With which power of its value a knob is expected to cost, roughly.
+POWERS = {"particles": 1.0, "voxels": 3.0, "parts": 3.0, "size": -3.0, "order": 2.0}
+
+
+class Way(NamedTuple):
+    """One way; sizes are in edges of a cube as large as the box, voxels along such an edge."""
+
+    title: str
+    look: str  # The method whose colour and line it has in figures
+    method: str  # Module
+    knobs: Mapping  # What it fixes
+    knob: str
+    first: float  # Value to begin with
+    point: float  # Of the row that a replay makes again
+    extrapolates: bool = False
+    own: bool = False  # Whether it is what the method does by itself
+    spheres: bool = False  # Whether it knows disjoint spheres only
+
+
+WAYS = {
+    "dem": Way("DEM", "dem", "dem", {}, "particles", 250, 2000, own=True),
+    # What is extrapolated from the same particles is mostly the same: by itself, and on few scenes.
+    "dem-limit": Way("DEM", "dem", "dem", {}, "particles", 4000, 8000, extrapolates=True),
+    "fem": Way("FEM, degree 2", "fem", "fem", {"order": 2}, "size", 0.35, 0.2, extrapolates=True, own=True),
+    "fem-p1": Way("FEM, degree 1", "fem-p1", "fem", {"order": 1}, "size", 0.2, 0.15),
+    "fft": Way("FFT", "fft", "fft", {}, "voxels", 8, 24, extrapolates=True, own=True),
+    # As little as the conductivity asks for (`fft.solve`): its error is then a hundredth of the voxels'.
+    "fft-loose": Way("FFT, tolerance 1e-3", "fft", "fft", {"tolerance": 1e-3}, "voxels", 8, 24, extrapolates=True),
+    "fft-laminate": Way("FFT, laminate", "fft", "fft", {"rule": "laminate"}, "voxels", 8, 24),
+    "fft-links": Way("FFT, links", "fft-links", "fft", {"rule": "links"}, "voxels", 8, 24),
+    "fft-em": Way("FFT, Eyre-Milton", "fft-em", "fft", {"scheme": "eyre-milton", "rule": "laminate"}, "voxels", 8, 24),
+    # An image's own voxels, or each of them split into so many along each edge.
+    "fft-image": Way("FFT", "fft", "fft", {}, "parts", 1, 1, own=True),
+    "multipole": Way("multipoles", "multipole", "multipole", {}, "order", 1, 3, own=True, spheres=True),
+}
+
+
+def value_at(way: Way, number: float) -> float | int:
+    """The knob's value at a place on the walk: the first at 0, each next place about STEP times as dear."""
+    if way.knob == "particles":
+        return round(way.first * STEP**number)
+    if way.knob == "size":
+        return way.first / STEP ** (number / 3)
+    if way.knob == "parts":
+        return 1 + round(number)
+    if way.knob == "order":
+        # Amplitudes go with the square of the degree, their equations with that squared, or less.
+        return max(round(way.first * STEP ** (number / 3)), math.ceil(way.first + number / 2))
+    return smooth(way.first * STEP ** (number / 3), MULTIPLE)
+
+
+def growth(way: Way, value: float, finer: float) -> float:
+    """How many times as much a finer value is expected to cost."""
+    return (finer / value) ** POWERS[way.knob]
+
+
+def between(way: Way, low, high):
+    """A value between two neighbours, None if there is none."""
+    if way.knob == "size":
+        return math.sqrt(low * high)
+    middle = math.sqrt(low * high)
+    value = smooth(middle, 2) if way.knob == "voxels" else round(middle)
+    return value if low < value < high else None
+
+
+def smooth(number: float, multiple: int) -> int:
+    """The whole multiple nearest to a number whose other prime factors are small."""
+    middle = max(round(number / multiple), 1)
+    found = (k for off in range(middle + 1) for k in (middle - off, middle + off) if k > 0 and _small(k))
+    return multiple * next(found)
+
+
+def _small(number):
+    for prime in PRIMES:
+        while number % prime == 0:
+            number //= prime
+    return number == 1
+
+
+def knobs_at(way: Way, value, scene) -> dict:
+    """Keywords of `solve` at a value of the knob."""
+    edge = scene.volume ** (1 / 3)
+    if way.knob == "size":
+        return {**way.knobs, "size": value * edge}
+    if way.knob == "parts":
+        return {**way.knobs, "voxels": tuple(n * value for n in scene.image.shape)}
+    if way.knob == "voxels":
+        return {**way.knobs, "voxels": [max(1, round(side * value / edge)) for side in scene.size]}
+    more = {"seed": 0, "allow_few": True} if way.knob == "particles" else {}
+    return {**way.knobs, **more, way.knob: value}
