@@ -34,7 +34,6 @@ WALKS = "no study asks for it yet: held against exact values by tests of its own
 CROWDS = "asked where spheres are many or walls cut them, which quick rows do not mesh: tests of its own"
 INLINED = "compiled into kernels that rows do execute, and called by nothing else"
 SHIPPED = "made the tiles that are shipped: a test makes one again"
-TOUCHING = "asked where good conductors touch, which no quick row has: tests of its own"
 RENAMED = "an old name: a test asks for it"
 CLAIMS = "claims extrapolate rows by it; no row does"
 NO_ROWS = {
@@ -75,15 +74,9 @@ NO_ROWS = {
     "demheat/scene/shapes/torus.py": BODIES,
     "demheat/scene/shapes/union.py": BODIES,
     "references/bracket/voxels/tensor.py": FORMS,
-    "demheat/network/bridges.py": TOUCHING,
-    "demheat/network/gap_links.py": TOUCHING,
-    "demheat/network/narrowest.py": TOUCHING,
     "demheat/splitting.py": FORMS,
     "references/exact/inclined.py": FORMS,
     "references/multipole/at_rest.py": FORMS,
-    "references/multipole/contacts.py": TOUCHING,
-    "references/multipole/turns.py": TOUCHING,
-    "references/multipole/two_spheres.py": TOUCHING,
     "references/multipole/lane_kernels.py": INLINED,
     "references/mesh/size_table.py": CROWDS,
     "references/mesh/turns.py": CROWDS,
