@@ -63,8 +63,9 @@ def one_blas_thread():
         return
     with _BLAS:
         if _within[0] == 0:
-            _found.append(_numbers())
-            _set_all([each | {"num_threads": 1} for each in _found[0]])
+            blas = _libraries()
+            _found.append((blas, blas.info()))
+            _set_all(blas, [each | {"num_threads": 1} for each in _found[0][1]])
         _within[0] += 1
     try:
         yield
@@ -72,35 +73,33 @@ def one_blas_thread():
         with _BLAS:
             _within[0] -= 1
             if _within[0] == 0:
-                _set_all(_found.pop())
+                _set_all(*_found.pop())
 
 
-def _numbers():
-    from threadpoolctl import threadpool_info
+def _libraries():
+    """Those of BLAS that are loaded by now, to be looked for once: some milliseconds, as long as a small solve."""
+    from threadpoolctl import ThreadpoolController
 
-    return [each for each in threadpool_info() if each["user_api"] == "blas"]
+    return ThreadpoolController().select(user_api="blas")
 
 
 @cache
 def _counts_by_thread():
     """Whether BLAS has a number of threads for each thread that calls it."""
-    return any(each.get("threading_layer") == "openmp" for each in _numbers())
+    return any(each.get("threading_layer") == "openmp" for each in _libraries().info())
 
 
-def _set_all(numbers):
-    """Set numbers of threads by library, as `_numbers` gives them, for the process.
+def _set_all(blas, numbers):
+    """Set numbers of threads by library, as its `info` gives them, for the process.
 
     threadpoolctl obeys that thread alone which has set numbers first, as long as it lives: so one that ends at once
     asks, or else, if the caller has asked before, the caller.
     """
-    from threadpoolctl import threadpool_limits
-
-    asking = threading.Thread(target=threadpool_limits, args=(numbers,))
+    asking = threading.Thread(target=blas.limit, kwargs={"limits": numbers})
     asking.start()
     asking.join()
-    wanted = {each["filepath"]: each["num_threads"] for each in numbers}
-    if any(each["num_threads"] != wanted.get(each["filepath"], each["num_threads"]) for each in _numbers()):
-        threadpool_limits(numbers)
+    if [each["num_threads"] for each in blas.info()] != [each["num_threads"] for each in numbers]:
+        blas.limit(limits=numbers)
 
 
 def open_after_fork(lock):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
-from demheat.runtime.process_state import _counts_by_thread, _numbers, _set_all, one_blas_thread, seeded
+from demheat.runtime.process_state import _counts_by_thread, _libraries, _set_all, one_blas_thread, seeded
 
 
 def test_seeded_is_the_same_each_time_and_leaves_no_trace():
@@ -19,18 +19,19 @@ def test_seeded_is_the_same_each_time_and_leaves_no_trace():
 
 
 def counts():
-    return [each["num_threads"] for each in _numbers()]
+    return [each["num_threads"] for each in _libraries().info()]
 
 
 @pytest.fixture
 def two():
     """BLAS with two threads, if it has more than one; numbers of before."""
-    before = _numbers()
-    _set_all([each | {"num_threads": 2} for each in before])
+    blas = _libraries()
+    before = blas.info()
+    _set_all(blas, [each | {"num_threads": 2} for each in before])
     if 2 not in counts():
         pytest.skip("BLAS has one thread here")
     yield counts()
-    _set_all(before)
+    _set_all(blas, before)
 
 
 def test_the_last_thread_out_puts_back_what_the_first_one_found(two):
