@@ -1,6 +1,8 @@
 import fcntl
 import gc
+import hashlib
 import os
+import pickle
 import tempfile
 from pathlib import Path
 
@@ -19,6 +21,39 @@ FOLDERS = ("NUMBA_CACHE_DIR", "DEMHEAT_CACHE", "XDG_CACHE_HOME")
 gc.set_threshold(50_000, 20, 20)
 
 
+def shared_folder(factory, name):
+    """A folder of this run that all workers see."""
+    root = factory.getbasetemp()
+    folder = (root.parent if "PYTEST_XDIST_WORKER" in os.environ else root) / name
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
+@pytest.fixture(scope="session", autouse=True)
+def meshed_once(tmp_path_factory):
+    """A mesh that several tests or workers ask for is made by one of them; tests of meshing make each anew."""
+    from references.mesh import apart, gmsh_session
+
+    folder, made = shared_folder(tmp_path_factory, "meshes"), gmsh_session.run_apart
+
+    def kept(function, *arguments, done, **limits):
+        if os.environ["PYTEST_CURRENT_TEST"].startswith("tests/references/mesh"):
+            return made(function, *arguments, done=done, **limits)
+        # What is asked for says all: the mesher's process sees nothing else.
+        path = folder / hashlib.sha256(pickle.dumps((function, arguments))).hexdigest()
+        if not path.exists():
+            answer = pickle.dumps(made(function, *arguments, done=done, **limits))
+            with tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
+                file.write(answer)
+            os.replace(file.name, path)
+        done(apart.LAST)
+        return pickle.loads(path.read_bytes())
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(gmsh_session, "run_apart", kept)
+        yield
+
+
 @pytest.fixture(scope="session", autouse=True)
 def compiled_once(tmp_path_factory):
     """One thread; and what two workers need compiled is compiled by one of them, the other waits and loads it."""
@@ -28,9 +63,7 @@ def compiled_once(tmp_path_factory):
     import demheat.runtime.threads  # noqa: F401 - chooses the layer before threads start
 
     numba.set_num_threads(1)
-    root = tmp_path_factory.getbasetemp()
-    locks = (root.parent if "PYTEST_XDIST_WORKER" in os.environ else root) / "compiling"
-    locks.mkdir(exist_ok=True)
+    locks = shared_folder(tmp_path_factory, "compiling")
     compiled = Dispatcher.compile
 
     def in_turn(self, signature):

@@ -1,6 +1,5 @@
 """Who may import whom: the rooms of the house, and the one home of each library."""
 
-import pytest
 from imported import HOMES, MODULES, OURS, below, imports
 from rooms import FRONTS, LAYERS, ROOMS
 
@@ -30,11 +29,9 @@ def refused(name, source, modules=MODULES, is_package=False):
     return wrong
 
 
-@pytest.mark.parametrize("name", MODULES)
-def test_layers(name):
-    path = MODULES[name]
-    wrong = refused(name, path.read_text(encoding="utf-8"), is_package=path.name == "__init__.py")
-    assert not wrong, f"{'; '.join(wrong)}: not allowed in its room, see tests/rooms.py and tests/rooms_beside.py"
+def test_layers():
+    texts = {name: (path.read_text(encoding="utf-8"), path.name == "__init__.py") for name, path in MODULES.items()}
+    assert [said for name, (text, package) in texts.items() for said in refused(name, text, is_package=package)] == []
 
 
 def test_rooms_stand_on_rooms_before_them():
