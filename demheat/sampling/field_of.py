@@ -29,7 +29,7 @@ def field_of(
         heat[name] = float(solution.wall_heat[here].sum())
     # What enters a body in time need not leave it.
     by_walls = time is None and not scene.periodic
-    sampler, temperature_at, flux_at = samplers(scene, network, solution)
+    sampler, temperature_at, flux_at = samplers(scene, network, solution, steady=time is None)
     return Field(
         scene=scene,
         mean_flux=(between_walls if by_walls else mean_flux)(network, scene, solution),
@@ -100,7 +100,7 @@ class _Locator:
         return cell, offsets - np.where(self.periodic, self.size * np.round(offsets / self.size), 0.0)
 
 
-def samplers(scene, network, solution):
+def samplers(scene, network, solution, *, steady=True):
     """The three lazy parts of a Field: its samples, temperature_at and flux_at."""
     fluxes = cache(lambda: cell_fluxes(network, solution))
     slopes = cache(lambda: _slopes(scene, network, fluxes()))
@@ -112,7 +112,7 @@ def samplers(scene, network, solution):
         conducting = scene.conductivities[network.phase]
         if solution.still is not None:
             conducting[solution.still] = 0.0
-        how = {"periodic": network.periodic, "phase_at": scene.phase_at, "conductivity": conducting}
+        how = {"periodic": network.periodic, "phase_at": scene.phase_at, "conductivity": conducting, "steady": steady}
         edges = cache(lambda: edges_of(scene, network, solution))
         parts = transformed(scene, network.phase, solution.temperature), solution.mean_gradient
         smooth = cache(lambda: Reconstruction(network, edges(), *parts, slopes(), **how))

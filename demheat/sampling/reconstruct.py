@@ -1,27 +1,42 @@
-"""Temperature and flux of a network between its particles: quadratics fitted to the cells around a point, by phase.
+"""Temperature and flux of a network between its particles: polynomials fitted to the cells around a point, by phase.
 
 A moving least squares fit (Lancaster and Salkauskas 1981) of the temperatures of a cell, its neighbours and theirs,
 reached over facets within one phase only, so that nothing is fitted across an interface; and of what the network knows
 at the phase's edges: temperatures on interfaces and held walls, slopes at the others, at walls that exchange heat with
 surroundings how both hang together. What is fitted is the difference from the cell's own linear temperature, whose
-gradient makes the cell's flux exact for linear fields: where there are too few cells for a quadratic, that is what
-remains. A jump within a cell, as at a wall heated at once, overshoots by up to .6 of it until cells have felt it.
+gradient makes the cell's flux exact for linear fields: where there are too few cells for more, that is what remains.
+
+In a steady state temperatures, or Kirchhoff's transforms of them, are harmonic within a phase: cubics of which that is
+so are no more coefficients to find than 16. Where heat is stored quadratics of all kinds are fitted; a jump within a
+cell, as at a wall heated at once, overshoots by up to .6 of it until cells have felt it.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.runtime.process_state import one_blas_thread
 from demheat.runtime.progress import stage
+from demheat.sampling.polynomials import HARMONICS, QUADRATICS, Polynomials
 
-# Cells of a fit, and the part of their weights that holds it to the linear temperature of the cell. Found on a sphere
-# of contrast 10 with 3000, 8000 and 64 000 particles and on 83 spheres with 8000 and 27 000, flux error rms: 1.12, .57,
-# .16, 8.5, 4.1 %; 20 cells and 3e-4: 1.46, .76, .21, 9.2, 4.9; 14 cells: 1.10, .60, .18, 8.3, 3.9. More of the ridge
-# leaves curvature out, less of it makes outliers in narrow gaps; more cells smear the front of a moving source.
-NEAREST, RIDGE = 16, 1e-4
-# Edge points of a fit, and weights of their values and slopes beside those of cells. Found there with 2e4 particles,
-# flux within a diameter of the interface, rms: .71 %; values weighted as cells .82, without edges 4.2 %.
-EDGES, VALUE, SLOPE = 12, 2.0, 0.3
+# Edge points of a fit, and weight of their slopes beside what cells know.
+EDGES, SLOPE = 12, 0.3
+
+
+class Fit(NamedTuple):
+    """What is fitted, and to how much."""
+
+    polynomials: Polynomials
+    nearest: int  # cells
+    ridge: float  # part of the weights that holds a fit to the linear temperature of the cell
+    value: float  # weight of values at edges beside those of cells
+
+
+# Where heat is stored. More of the ridge leaves curvature out; more cells smear the front of a moving source.
+STORED = Fit(QUADRATICS, 16, 1e-4, 2.0)
+# Steady, see docs/decisions/points.md.
+STEADY = Fit(HARMONICS, 24, 1e-5, 6.0)
 # Points fitted at once: some 100 MiB of candidates.
 CHUNK = 4096
 
@@ -29,8 +44,8 @@ CHUNK = 4096
 class Reconstruction:
     """Values of a network's temperature and flux density anywhere."""
 
-    def __init__(self, network, edges, temperature, gradient, slope, *, periodic, phase_at, conductivity):
-        self.network, self.edges = network, edges
+    def __init__(self, network, edges, temperature, gradient, slope, *, periodic, phase_at, conductivity, steady=True):
+        self.network, self.edges, self.fit = network, edges, STEADY if steady else STORED
         self.temperature, self.gradient, self.slope = temperature, gradient, slope - gradient
         self.periodic, self.phase_at = np.asarray(periodic, bool), phase_at
         self.conductivity = np.asarray(conductivity, dtype=float)
@@ -67,7 +82,8 @@ class Reconstruction:
         wrapped = np.where(self.periodic, points % size, points)
         seed = self.tree.query(np.column_stack([wrapped, self.apart * self.phase_at(points)]))[1]
         from_seed = self._nearest_image(wrapped - self.network.centers[seed])
-        more, steeper = self._beyond_linear(seed, wrapped, from_seed)
+        with one_blas_thread():  # older ones share even small products out, which changes the last bits
+            more, steeper = self._beyond_linear(seed, wrapped, from_seed)
         level = self.temperature[seed] + np.einsum("ij,ij->i", self.slope[seed], from_seed)
         slope = self.slope[seed] + steeper + self.gradient
         k = self.conductivity[seed]
@@ -78,15 +94,15 @@ class Reconstruction:
         """What fits add at the points to the linear temperature of their seeds' cells, and to its gradient."""
         around, edges = self._around(seed)
         level, slope = self.temperature[seed][:, None], self.slope[seed]
-        cell, offset, away = self._nearest(points, self.network.centers, around, NEAREST + 1)
+        cell, offset, away = self._nearest(points, self.network.centers, around, self.fit.nearest + 1)
         # Weights fall to zero, with their slope, at the first cell that is left out: no jump where the choice changes.
-        full = np.isfinite(away).sum(axis=1) > NEAREST
+        full = np.isfinite(away).sum(axis=1) > self.fit.nearest
         last = np.where(np.isfinite(away), away, 0.0).max(axis=1)
         reach = np.where(full, last, 1.5 * last + 1e-300)[:, None]
         values = self.temperature[cell] - level - _along(slope, offset + from_seed[:, None])
-        rows = [(_basis(offset / reach[..., None]), _weight(away / reach), values)]
+        rows = [(self.fit.polynomials.values(offset / reach[..., None]), _weight(away / reach), values)]
         rows += self._at_edges(seed, points, from_seed, edges, reach) if len(self.edges.values) else []
-        found = _least_squares(*(np.concatenate(part, axis=1) for part in zip(*rows, strict=True)))
+        found = _least_squares(*(np.concatenate(part, axis=1) for part in zip(*rows, strict=True)), self.fit.ridge)
         return found[:, 0], found[:, 1:4] / reach
 
     def _at_edges(self, seed, points, from_seed, edges, reach):
@@ -98,8 +114,9 @@ class Reconstruction:
         slopes = reach * (self.edges.slopes[edge] - _along(slope + self.gradient, normal))
         # Of the value in what is known: 1 where that is held, 0 where the flux is, a film's Biot number says between.
         share = 1.0 - 1.0 / (1.0 + self.edges.film[edge] * reach)
-        row = share[..., None] * _basis(scaled) + (1.0 - share)[..., None] * _directed(scaled, normal)
-        return [(row, (VALUE * share + SLOPE * (1.0 - share)) * weight, share * values + (1.0 - share) * slopes)]
+        own, value = self.fit.polynomials, self.fit.value
+        row = share[..., None] * own.values(scaled) + (1.0 - share)[..., None] * own.along(scaled, normal)
+        return [(row, (value * share + SLOPE * (1.0 - share)) * weight, share * values + (1.0 - share) * slopes)]
 
     def _nearest(self, points, places, chosen, most):
         """The nearest of the candidates of each point: numbers, offsets from it and distances, infinite where none."""
@@ -159,23 +176,10 @@ def _weight(ratio):
     return np.maximum(1.0 - np.minimum(ratio, 1.0) ** 2, 0.0) ** 2
 
 
-def _basis(x):
-    """Monomials up to second order, (m, k, 3) -> (m, k, 10) float array."""
-    squares = [x[..., i] * x[..., j] for i in range(3) for j in range(i, 3)]
-    return np.stack([np.ones(x.shape[:2]), *np.moveaxis(x, 2, 0), *squares], axis=2)
-
-
-def _directed(x, normal):
-    """Derivatives of the monomials along unit vectors, (m, k, 10) float array."""
-    pairs = [(i, j) for i in range(3) for j in range(i, 3)]
-    squares = [normal[..., i] * x[..., j] + normal[..., j] * x[..., i] for i, j in pairs]
-    return np.stack([np.zeros(x.shape[:2]), *np.moveaxis(normal, 2, 0), *squares], axis=2)
-
-
-def _least_squares(basis, weight, values):
-    """Coefficients of the fits, (m, 10) float array."""
+def _least_squares(basis, weight, values, ridge):
+    """Coefficients of the fits, (m, polynomials) float array."""
     weighted = basis * weight[..., None]
     values = np.where(weight > 0, values, 0.0)
-    with one_blas_thread():  # older ones share even these small products out, which changes the last bits
-        matrix = np.swapaxes(weighted, 1, 2) @ basis + RIDGE * weight.sum(axis=1)[:, None, None] * np.eye(10)
-        return np.linalg.solve(matrix, np.einsum("mki,mk->mi", weighted, values)[..., None])[..., 0]
+    matrix = np.swapaxes(weighted, 1, 2) @ basis
+    matrix += ridge * weight.sum(axis=1)[:, None, None] * np.eye(basis.shape[2])
+    return np.linalg.solve(matrix, np.einsum("mki,mk->mi", weighted, values)[..., None])[..., 0]

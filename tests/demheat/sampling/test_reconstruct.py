@@ -21,31 +21,38 @@ def inside(number=400, seed=0):
     return np.random.default_rng(seed).random((number, 3))
 
 
-def test_quadratic_temperatures_of_one_phase_are_exact(monkeypatch):
-    """The fit itself, without a solver and nearly without the ridge: any quadratic, from values and any slopes."""
-    monkeypatch.setattr(module, "RIDGE", 1e-12)
+def fitted_to(temperature, monkeypatch, *, steady):
+    """The fit itself, without a solver and nearly without the ridge: from values at particles and any slopes."""
+    name = "STEADY" if steady else "STORED"
+    monkeypatch.setattr(module, name, getattr(module, name)._replace(ridge=1e-12))
     packing = relaxed(600, periodic=False, seed=2)
     field = demheat.solve(Scene(size=(1, 1, 1), matrix=ONE, walls=WALLS), packing=packing)
-    curved = np.array([[1.0, 0.3, 0.0], [0.3, -2.0, 0.5], [0.0, 0.5, 0.7]])
     network = caught(field).network
-    x = network.centers
-    values = np.einsum("ni,ij,nj->n", x, curved, x)
-    rough = np.random.default_rng(0).standard_normal((len(x), 3))
+    rough = np.random.default_rng(0).standard_normal((len(network.centers), 3))
     none = Edges(np.zeros(601, dtype=int), *np.empty((2, 0, 3)), *np.empty((3, 0)))
-    made = module.Reconstruction(
-        network,
-        none,
-        values,
-        np.zeros(3),
-        rough,
-        periodic=[False] * 3,
-        phase_at=field.scene.phase_at,
-        conductivity=np.full(600, 2.0),
-    )
+    how = {"periodic": [False] * 3, "phase_at": field.scene.phase_at, "conductivity": np.full(600, 2.0)}
+    values = temperature(network.centers)
+    return module.Reconstruction(network, none, values, np.zeros(3), rough, **how, steady=steady)
+
+
+def test_quadratic_temperatures_of_one_phase_are_exact(monkeypatch):
+    curved = np.array([[1.0, 0.3, 0.0], [0.3, -2.0, 0.5], [0.0, 0.5, 0.7]])
+    made = fitted_to(lambda x: np.einsum("ni,ij,nj->n", x, curved, x), monkeypatch, steady=False)
     points = inside()
     # Ridge times the error of the slopes, some 3, over the least eigenvalue of the fits, 1e-6.
     assert_allclose(made.temperature_at(points), np.einsum("ni,ij,nj->n", points, curved, points), atol=1e-7)
     assert_allclose(made.flux_at(points), -4.0 * points @ curved, atol=1e-5)
+
+
+def test_harmonic_temperatures_of_third_order_are_exact_where_no_heat_is_stored(monkeypatch):
+    made = fitted_to(lambda x: x[:, 0] ** 3 - 3 * x[:, 0] * x[:, 1] ** 2 + x[:, 1] * x[:, 2], monkeypatch, steady=True)
+    # Off the walls: beside them few cells, and here no edges, leave a cubic open.
+    points = 0.1 + 0.8 * inside()
+    x, y, z = points.T
+    # As above; cubics have eigenvalues ten times smaller still.
+    assert_allclose(made.temperature_at(points), x**3 - 3 * x * y**2 + y * z, atol=1e-6)
+    slope = np.column_stack([3 * x**2 - 3 * y**2, -6 * x * y + z, y])
+    assert_allclose(made.flux_at(points), -2.0 * slope, atol=1e-4)
 
 
 def caught(field):
