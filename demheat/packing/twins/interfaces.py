@@ -142,6 +142,10 @@ class PlaneSurface(NamedTuple):
         normals[:, self.axis] = 1.0
         return points, normals
 
+    def choice(self, least, widest, wanted, rng):
+        """Points to choose closer ones from."""
+        return self.pattern(least, rng)
+
     def bend(self, points, normals, step):
         """Of a plane there is none, (k,) float array."""
         return np.zeros(len(points))
@@ -181,6 +185,10 @@ class ShapeSurface:
         """Evenly spread points and outward normals, both (k, 3) float arrays."""
         return self.shape.pattern(spacing, rng, self._room)
 
+    def choice(self, least, widest, wanted, rng):
+        """Points to choose closer ones from, where less than `widest` is wanted, and normals, two (k, 3) arrays."""
+        return self.shape.choice(least, widest, wanted, rng, self._room)
+
     def touched(self, points, normals):
         """The points moved onto planes that keep the volume, (k, 3) float array, m."""
         return self.shape.facets(points, normals, self._room) if len(points) else points
@@ -200,9 +208,16 @@ class ShapeSurface:
         if not skip_self:
             return np.abs(self.shape.distance(points, period=self.scene.period))
         nearest, normals = np.full(len(points), np.inf), self.shape.normal(points) if self._meets_itself() else None
-        for shift in shifts(self.shape, self.scene.period):
-            away = self.shape.distance(points - shift) if normals is None else self._facing(points - shift, normals)
-            nearest = np.minimum(nearest, np.abs(away))
+        low, high = self.shape.bounds()
+        # Those beside it first: of the others most are farther, by their bounds alone.
+        for shift in sorted(shifts(self.shape, self.scene.period), key=np.linalg.norm):
+            moved = points - shift
+            beyond = np.maximum(np.maximum(low - moved, moved - high), 0.0)
+            near = np.flatnonzero(np.einsum("ij,ij->i", beyond, beyond) < nearest**2)
+            if len(near):
+                moved = moved[near]
+                away = self.shape.distance(moved) if normals is None else self._facing(moved, normals[near])
+                nearest[near] = np.minimum(nearest[near], np.abs(away))
         return nearest
 
     def _meets_itself(self):

@@ -139,10 +139,17 @@ def _on_other(number, surface, interfaces, radius, rng, tally, usual, wanted):
     tally.add(spacing / (SPACING * radius), interfaces.stacks.sizes()[number])
     if np.all(spacing >= SPACING * radius):
         return even
-    points, normals, own = pattern(FINE * radius)
+    points, normals = surface.choice(FINE * radius, SPACING * radius, partial(_wanted_of, number, wanted), rng)
+    if not len(points):
+        return even
+    own = np.full(len(points), number)
     longest = np.eye(3)[[np.argmax(np.ptp(points, axis=0))]]
     fine = _Fine(points, normals, own, np.array([number]), longest)
     return _refined(interfaces, even, spacing, fine, usual, wanted)
+
+
+def _wanted_of(number, wanted, points, normals):
+    return wanted(points, normals, np.full(len(points), number))
 
 
 class _Fine(NamedTuple):

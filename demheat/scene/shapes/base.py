@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 from typing import ClassVar
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from demheat.scene.inputs import moderate, number
 from demheat.scene.material import WITHIN, Material
-from demheat.scene.shapes.patterns import Room, even_points, level
+from demheat.scene.shapes.patterns import Room, closer, even_points, level
 
 # Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
 TOUCH = 1e-12
@@ -130,18 +130,7 @@ class Shape(ABC):
         """The same shape with axes order[0], order[1], order[2] as axes 0, 1, 2."""
 
     def contains(self, points: ArrayLike, *, period: np.ndarray | None = None) -> np.ndarray:
-        """Which points lie inside or on the surface; up to rounding those whose distance is not positive.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        period : (3,) float array, m, optional
-            Of a periodic cell.
-
-        Returns
-        -------
-        (n,) bool array
-        """
+        """Which points lie inside or on the surface, (n,) bool array; up to rounding their distance is not positive."""
         return self.distance(points, period=period) <= 0.0
 
     @property
@@ -335,6 +324,11 @@ class Shape(ABC):
     def pattern(self, spacing: float, rng: np.random.Generator, room: Room) -> tuple[np.ndarray, np.ndarray]:
         """Points evenly all over its surface in a box, and maybe beyond, and outward normals, two (k, 3) arrays."""
         return even_points(self, spacing, rng, room)
+
+    def choice(self, least: float, widest: float, wanted: Callable, rng: np.random.Generator, room: Room):
+        """Points and normals to choose closer ones from: where less than `widest` is `wanted` of points and normals."""
+        own = type(self).pattern is not Shape.pattern
+        return self.pattern(least, rng, room) if own else closer(self, widest, wanted, rng, room)
 
     def facets(self, points: np.ndarray, normals: np.ndarray, room: Room) -> np.ndarray:
         """Points of a pattern moved along normals so that planes there keep the volume, (k, 3) float array, m."""

@@ -16,7 +16,7 @@ import numpy as np
 from demheat.scene.beats import beat
 from demheat.scene.shapes.directions import across
 from demheat.scene.shapes.morton import morton_order
-from demheat.scene.shapes.samples import surface_points
+from demheat.scene.shapes.samples import CLOSER, closer_points, surface_points
 
 # Side of a square pattern over the spacing of a triangular one as dense.
 SQUARE = 0.75**0.25
@@ -110,14 +110,27 @@ def _nearest(points, samples):
     return nearest
 
 
+def closer(shape, widest: float, wanted, rng, room: Room):
+    """Points of a surface to choose from where less than a spacing is wanted, and normals; see `closer_points`."""
+    pitch = CLOSER * widest
+    low, high = _around(shape, room, pitch, pitch)
+    shift = np.where(np.isfinite(shape.bounds()[0]), pitch * rng.random(3), 0.0)
+    return closer_points(shape, low - shift, high, widest, wanted)
+
+
 def sampled(shape, room: Room, pitch: float):
     """Points all over a surface, in a box with walls and a little beyond, and their areas."""
+    return surface_points(shape, *_around(shape, room, pitch, BEYOND * pitch), pitch)
+
+
+def _around(shape, room, pitch, beyond):
+    """Ends of a box a pitch wider than a surface, at most so far beyond walls, two (3,) float arrays, m."""
     low, high = shape.bounds()
     if not room.periodic:
-        low, high = np.maximum(low, -BEYOND * pitch), np.minimum(high, np.array(room.size) + BEYOND * pitch)
+        low, high = np.maximum(low, -beyond), np.minimum(high, np.array(room.size) + beyond)
     # What goes on through a periodic cell is looked at once along it.
     ends = np.isfinite(low)
-    return surface_points(shape, np.where(ends, low - pitch, 0.0), np.where(ends, high + pitch, room.size), pitch)
+    return np.where(ends, low - pitch, 0.0), np.where(ends, high + pitch, room.size)
 
 
 def _ordered(samples, areas):

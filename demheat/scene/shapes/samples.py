@@ -14,6 +14,8 @@ from demheat.scene.shapes.sections import below
 FIRST, BLOCK = 16, 1 << 16
 # Distances are exact or nearly so: a cell whose middle is farther off than this many half diagonals has no surface.
 SLACK = 1.5
+# Of the distance that is wanted, at most: cells in which points are found to choose from.
+CLOSER = 0.35
 # Cells along the longest side by which volumes are found.
 CELLS = 48
 
@@ -45,6 +47,36 @@ def surface_points(shape, low, high, pitch: float) -> tuple[np.ndarray, np.ndarr
         points = block - distance[:, None] * normal
         found.append((points[area > 0], area[area > 0]))
     return tuple(np.concatenate(column) for column in zip(*found, strict=True))
+
+
+def closer_points(shape, low, high, widest: float, wanted) -> tuple[np.ndarray, np.ndarray]:
+    """Points to choose from on the surface of a shape in a box, where less than a spacing is wanted, and normals.
+
+    `wanted` says of points and normals which distance they are to have, and changes along a way by no more than that.
+    """
+    centers, sides = cells_on(shape, low, high, CLOSER * widest)
+    found = [(np.empty((0, 3)), np.empty((0, 3)))]
+    while len(centers):
+        half, kept = 0.5 * np.linalg.norm(sides), []
+        for block in _blocks(centers):
+            distance, normal = shape.surface(block)
+            points = block - distance[:, None] * normal
+            spacing = wanted(points, normal)
+            fine = sides.max() <= CLOSER * spacing
+            found.append(
+                tuple(column[fine & (spacing < widest) & (np.abs(distance) <= half)] for column in (points, normal))
+            )
+            kept.append(block[~fine & (spacing - half < widest)])
+        centers, sides = _halved(shape, np.concatenate(kept), sides)
+    return tuple(np.concatenate(column) for column in zip(*found, strict=True))
+
+
+def _halved(shape, centers, sides):
+    """Eighths of cells that the surface may cut, all axes halved."""
+    shifts = np.array(list(product((-0.25, 0.25), repeat=3))) * sides
+    return np.concatenate(
+        [_near(shape, (b[:, None] + shifts).reshape(-1, 3), 0.5 * sides) for b in _blocks(centers)]
+    ), 0.5 * sides
 
 
 def volume_by_cells(shape, low, high) -> float:

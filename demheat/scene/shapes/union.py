@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
@@ -14,7 +14,7 @@ from demheat.scene.material import Material, check_material
 from demheat.scene.shapes.base import Shape, check_resistance
 from demheat.scene.shapes.creases import crease
 from demheat.scene.shapes.occ import GENERIC
-from demheat.scene.shapes.patterns import SPREAD, Room, lifted, sampled, sampled_between, spread
+from demheat.scene.shapes.patterns import SPREAD, Room, closer, lifted, sampled, sampled_between, spread
 from demheat.scene.shapes.samples import volume_by_cells
 from demheat.scene.shapes.solid import Solid
 
@@ -22,6 +22,8 @@ from demheat.scene.shapes.solid import Solid
 ON = 1e-9
 # Of an endless one, over its width: how thick a slice its cross-section is measured in.
 SLICE = 1 / 96
+# Cosines of normals: from which on one is that of a face, and from which on two faces go on in each other.
+FLAT, ALIKE = 1.0 - 1e-6, 0.98
 
 
 @dataclass(frozen=True)
@@ -206,6 +208,17 @@ class Union(Solid):
             bare = self.bare(points, normals)
             found.append((points[bare], normals[bare]))
         return tuple(np.concatenate(column) for column in zip(*found, strict=True))
+
+    def choice(self, least: float, widest: float, wanted: Callable, rng: np.random.Generator, room: Room):
+        """Points to choose from, half the least spacing off edges and creases; see `Shape.choice`."""
+        points, normals = closer(self, widest, wanted, rng, room)
+        own, smooth = self._faced(points), np.ones(len(points), dtype=bool)
+        for number, face in enumerate(self.faces):
+            mine, outward = own == number, face.normal(points)
+            cosine = np.einsum("ij,ij->i", normals, outward)
+            smooth &= ~mine | (cosine > FLAT)
+            smooth &= mine | (cosine > ALIKE) | (np.abs(face.distance(points)) > 0.5 * least)
+        return points[smooth], normals[smooth]
 
     def facets(self, points: np.ndarray, normals: np.ndarray, room: Room) -> np.ndarray:
         """Each face for itself: across a crease planes are others; see `Shape.facets`."""

@@ -11,8 +11,11 @@ from solid_shapes import MATRIX, OTHER, RING, SOLIDS
 from demheat import Scene, solve
 from demheat.packing.relax import relax
 from demheat.packing.twins.conforming import conform
+from demheat.packing.twins.gaps import Interfaces
 from demheat.packing.twins.interfaces import surfaces_of
-from demheat.scene import Cylinder, Ellipsoid, HalfSpace
+from demheat.packing.twins.patterns import SPACING as USUAL
+from demheat.packing.twins.patterns import Tally, patterns
+from demheat.scene import Cylinder, Ellipsoid, HalfSpace, Union
 from demheat.scene.shapes.samples import surface_points
 
 SPACING = 0.08
@@ -109,3 +112,56 @@ def test_points_on_what_is_thin_for_their_spacing_are_apart():
         points, _ = surface.pattern(0.6, np.random.default_rng(seed))
         away, _ = cKDTree(points).query(points, k=2)
         assert away[:, 1].min() > 1e-3
+
+
+def two_eggs():
+    """A gap of .012 between two ellipsoids that stand side by side, one of them turned."""
+    eggs = [
+        Ellipsoid((x, 0.5, 0.5), (0.2, 0.3, 0.25), OTHER, rotation=(turn, 0, 0)) for x, turn in ((0.294, 0), (0.706, 1))
+    ]
+    return Scene((1.0, 1.0, 1.0), MATRIX, eggs, gradient=(1.0, 0.0, 0.0))
+
+
+def two_unions():
+    """Two dumb-bells side by side, a gap of .012 between them."""
+    bells = []
+    for x in (0.294, 0.706):
+        balls = [Ellipsoid((x, y, 0.5), (0.2, 0.2, 0.2), OTHER) for y in (0.35, 0.65)]
+        bells.append(Union(balls, OTHER))
+    return Scene((1.0, 1.0, 1.0), MATRIX, bells, gradient=(1.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("scene", [two_eggs(), two_unions()], ids=["eggs", "unions"])
+def test_points_of_narrow_gaps_are_as_close_as_they_ask_and_even(scene):
+    """Every place lies within so many of its own spacings of a point, and no two are nearer than what is thinned to."""
+    radius, gap_spacing = 0.03, 0.85
+    interfaces = Interfaces(scene, 4.0 * radius)
+    found = list(patterns(interfaces, radius, 0, Tally(), gap_spacing))
+    for number, (points, _, own) in enumerate(found):
+        shape = scene.inclusions[number]
+        assert np.all(own == number)
+        assert_allclose(shape.distance(points), 0.0, atol=1e-9)
+        samples, _ = surface_points(shape, np.zeros(3), np.ones(3), 0.15 * radius)
+        spacing = np.clip(
+            gap_spacing * interfaces.gap(samples, np.full(len(samples), number)), 0.2 * radius, USUAL * radius
+        )
+        away, _ = cKDTree(points).query(samples)
+        narrow = spacing < 1.5 * radius
+        assert np.count_nonzero(narrow) > 100
+        # As an even pattern: .85 at most, .75 in all but a hundredth.
+        assert np.quantile(away[narrow] / spacing[narrow], 0.99) < 0.8 and np.max(away[narrow] / spacing[narrow]) < 1.0
+        # What is chosen first, the closest, keeps .75 of its own spacing.
+        own_spacing = np.clip(gap_spacing * interfaces.gap(points, own), 0.2 * radius, USUAL * radius)
+        away, pair = cKDTree(points).query(points, k=2)
+        asked = np.min(own_spacing[pair], axis=1)
+        assert np.min((away[:, 1] / asked)[asked < 1.5 * radius]) > 0.74
+
+
+def test_points_to_choose_from_are_sought_in_gaps_alone(monkeypatch):
+    """Points of which feet on these two are sought: of a close pattern all over, spread out, there were millions."""
+    seen = []
+    keep = Ellipsoid._feet
+    monkeypatch.setattr(Ellipsoid, "_feet", lambda self, offsets: seen.append(len(offsets)) or keep(self, offsets))
+    for _ in patterns(Interfaces(two_eggs(), 0.12), 0.03, 0, Tally(), 0.85):
+        pass
+    assert sum(seen) < 1_200_000  # found 860 000
