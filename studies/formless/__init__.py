@@ -1,0 +1,221 @@
+"""Surfaces without formulas: gyroid, primitive, diamond, random fields, overlapping spheres, a checkerboard, a knot.
+
+The labyrinths of three minimal surfaces, by their nodes, at fractions from .1 to .9; a level cut of twelve random
+waves, much like a Gaussian field; spheres at random places that overlap, below and above the fraction .29 at which they
+join through; a checkerboard in three dimensions as an image; a trefoil of triangles. No exact value
+is known of any: the DEM, the FFT and finite elements, are held against each other and against bounds
+of the fractions that they have (Hashin and Shtrikman's of the labyrinths, which are cubic, else those of layers). Both
+labyrinths of each surface are alike, so a contrast of .01 at a fraction is 100 at the rest, a hundredth of it. Of half
+a labyrinth that does not conduct a third is left, as was found of P and D (Torquato, Hyun and Donev 2002).
+"""
+
+from studies.harness import methods
+from studies.harness.pick import largest, pick, present
+
+LABYRINTHS = ("primitive", "diamond", "gyroid")
+FRACTIONS, HALF = (0.1, 0.3, 0.5, 0.7, 0.9), 0.5
+# What the DEM and the FFT are asked of these, who pay for each point of a surface.
+OF_ALL = (0.1, 0.5, 0.9)
+BAD, GOOD = 0.01, 100.0
+# Particles, voxels along an edge, size of elements in edges; elements once more, finer.
+SPENT, FINE = {"dem": 8_000, "fft": 32, "fem": 1 / 12}, 1 / 18
+# The knot's tube is a tenth of an edge thick.
+ON_KNOT = (1 / 24, 1 / 32)
+# Beside pores laminates of voxels do not converge: plain ones, more of them.
+PLAIN = 64
+# Part, contrast and fraction of what all three take.
+OTHERS = (
+    ("random field", GOOD, 0.3),
+    ("overlapping spheres", GOOD, 0.24),
+    ("overlapping spheres", GOOD, 0.34),
+    ("knot", GOOD, None),
+    ("knot", BAD, None),
+)
+CHECKERED = 10.0
+# Sizes of bricks, in edges, and voxels into which those of the image are parted.
+BRICKS, PARTED = (1 / 16, 1 / 32), 64
+# Largest distance from elements, %, over the rows of a part. They were set before rows were seen; known were of the
+# gyroid at a half and contrast 10 .03 and .15 %, and at 100 that links of 32 voxels are 5 % below.
+APART = {
+    "labyrinths": {"dem": 2.0, "fft": 6.0, "fft-plain": 4.0},
+    "random field": {"dem": 3.0, "fft": 8.0},
+    "overlapping spheres": {"dem": 4.0, "fft": 10.0},
+    "knot": {"dem": 2.0, "fft": 4.0},
+}
+REASONS = {}
+FAILS = {}
+PAPER = {}
+TIMEOUT = 3600.0
+
+
+def _case(name, part, contrast, fraction, value=None):
+    value = (SPENT | {"fft-plain": PLAIN})[name] if value is None else value
+    where = {"part": part, "contrast": contrast} | ({} if fraction is None else {"fraction": fraction})
+    return methods.case(name, **where, **methods.at(methods.all_methods()[name], value))
+
+
+def _cases():
+    for part in LABYRINTHS:
+        for fraction in FRACTIONS:
+            for contrast in (0.0, BAD, GOOD):
+                yield _case("fem", part, contrast, fraction)
+            for name in ("dem", "fft") if fraction in OF_ALL else ():
+                yield _case(name, part, GOOD, fraction)
+        for name in ("dem", "fft-plain"):
+            yield _case(name, part, 0.0, HALF)
+        yield _case("fem", part, GOOD, HALF, FINE)
+    for other in OTHERS:
+        for name in ("dem", "fft"):
+            yield _case(name, *other)
+        for size in ON_KNOT if other[0] == "knot" else (SPENT["fem"], FINE):
+            yield _case("fem", *other, size)
+    for size in BRICKS:
+        yield _case("fem-p1", "checkerboard", CHECKERED, None, size)
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """Half labyrinths of the primitive surface, and the knot by elements."""
+    return (case["part"] == "primitive" and case.get("fraction") == HALF and case["name"] != "dem") or (
+        case["part"] == "knot" and case["name"] == "fem"
+    )
+
+
+def VALUES(case):
+    """All: nobody asks what they cost."""
+    return True
+
+
+def run(name, part, contrast, method, fraction=None, **knobs):
+    """Solve one scene; conductivity and bounds over the matrix's, the latter of the fractions that the method has."""
+    from references import bounds
+    from studies.formless import scenes
+
+    scene = scenes.made(part, contrast, fraction)
+    field = methods.load(method).solve(scene, **knobs)
+    own = float(sum(field.fractions[1:]))
+    if part in LABYRINTHS:
+        low, high = bounds.hashin_shtrikman(1.0, contrast, own)
+    else:
+        low, high = (mean([1.0, contrast], [1 - own, own]) for mean in (bounds.reuss, bounds.voigt))
+    found = {"k_ratio": field.conductivity / methods.MATRIX, "inclusion": own}
+    known = {name: field.stats.get(name) for name in ("unknowns", "iterations", "residual")}
+    return found | {"lower_ratio": float(low), "upper_ratio": float(high)} | known
+
+
+def claims(df):
+    """Distances between methods, bounds, fractions, and what symmetry says."""
+    yield from present(_claims(df))
+
+
+def _claims(df):
+    rows = _with_elements(df)
+    for group, limits in APART.items():
+        mine = rows[rows["group"] == group]
+        for name, limit in limits.items():
+            text = f"{group}, {methods.all_methods()[name].title}: largest distance from elements, %"
+            yield text, largest(pick(mine, name=name), "apart_percent"), limit
+    fine = rows[rows["finer_percent"].notna()]
+    yield "finite elements: largest change to coarser ones, %", largest(fine, "finer_percent"), 0.5
+    yield "least distance from a bound, % of it", _room(df), ">= 0"
+    yield "labyrinths, finite elements: fractions off by, % of the cell", largest(_off(df), "off_percent"), 0.1
+    yield "labyrinths, finite elements: contrast .01 beside 100 of the rest, %", _dual(df), 0.5
+    third = pick(df, name="fem", contrast=0.0, fraction=HALF)
+    third = third.assign(third_percent=100 * (3 * third["k_ratio"] - 1)) if len(third) else third
+    yield "half labyrinths that do not conduct, finite elements: off a third, %", largest(third, "third_percent"), 1.5
+
+
+def _with_elements(df):
+    """Rows with their group, and how far they are from the finest elements of the same scene, %."""
+    df = df.reset_index(drop=True)
+    group = df["part"].where(~df["part"].isin(LABYRINTHS), "labyrinths")
+    apart, finer = [], []
+    for row in df.to_dict("records"):
+        where = {key: _none(row.get(key)) for key in ("part", "contrast", "fraction")}
+        elements = pick(df, name="fem", **where)
+        best = elements[elements["size"] == elements["size"].min()]["k_ratio"] if len(elements) else ()
+        off = 100 * (row["k_ratio"] / float(best.iloc[0]) - 1) if len(best) and float(best.iloc[0]) else float("nan")
+        apart.append(off if row["name"] != "fem" else float("nan"))
+        finer.append(off if row["name"] == "fem" and row["size"] > elements["size"].min() else float("nan"))
+    return df.assign(group=group, apart_percent=apart, finer_percent=finer)
+
+
+def _none(value):
+    return None if value is None or value != value else value
+
+
+def _room(df):
+    """Least distance from a bound, % of the bound; negative outside of them."""
+    if not len(df):
+        return None
+    low = (df["k_ratio"] - df["lower_ratio"]) / df["upper_ratio"]
+    return float(100 * low.combine((df["upper_ratio"] - df["k_ratio"]) / df["upper_ratio"], min).min(skipna=False))
+
+
+def _off(df):
+    rows = pick(df, name="fem")
+    rows = rows[rows["part"].isin(LABYRINTHS)]
+    return rows.assign(off_percent=100 * (rows["inclusion"] - rows["fraction"]))
+
+
+def _dual(df):
+    """Largest distance of a bad labyrinth from the good one that it is beside, %."""
+    worst = None
+    for part in LABYRINTHS:
+        for fraction in FRACTIONS:
+            one = pick(df, name="fem", part=part, contrast=BAD, fraction=fraction)["k_ratio"]
+            other = pick(df, name="fem", part=part, contrast=GOOD)
+            other = other[(other["fraction"] - (1 - fraction)).abs() < 1e-9].sort_values("size")["k_ratio"]
+            if len(one) and len(other):
+                off = abs(100 * (float(one.iloc[0]) / (BAD * float(other.iloc[-1])) - 1))
+                worst = off if worst is None else max(worst, off)
+    return worst
+
+
+def table(df):
+    """Conductivity over the matrix's by the finest elements, the others' distance from it, %, and the bounds."""
+    import pandas as pd
+
+    rows, lines = _with_elements(df), []
+    for (part, contrast, fraction), group in rows.groupby(["part", "contrast", "fraction"], sort=False, dropna=False):
+        finest = group[group["size"] == group["size"].min()] if group["size"].notna().any() else group
+        first = finest.iloc[0]
+        line = {"part": part, "contrast": contrast, "fraction": fraction, "elements": first["k_ratio"]}
+        for title, names in (("DEM", ("dem",)), ("FFT", ("fft", "fft-plain"))):
+            apart = group[group["name"].isin(names)]["apart_percent"]
+            line[title] = float(apart.iloc[0]) if len(apart) else float("nan")
+        lines.append(line | {"at least": first["lower_ratio"], "at most": first["upper_ratio"]})
+    return pd.DataFrame(lines)
+
+
+def plot(df):
+    """Conductivity of labyrinths against their fraction, between bounds, and how far methods are apart."""
+    import matplotlib.pyplot as plt
+
+    figure, (one, other) = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
+    marks = {"fem": "o", "dem": "s", "fft": "^"}
+    for colour, part in zip(("C0", "C1", "C2"), LABYRINTHS, strict=True):
+        for name, mark in marks.items():
+            rows = pick(df, part=part, name=name, contrast=GOOD).sort_values("fraction")
+            fill = colour if name == "fem" else "none"
+            label = f"{part}, {methods.all_methods()[name].title}"
+            one.plot(rows["fraction"], rows["k_ratio"], mark, color=colour, mfc=fill, label=label)
+    rows = pick(df, name="fem", part=LABYRINTHS[0], contrast=GOOD).sort_values("fraction")
+    one.fill_between(rows["fraction"], rows["lower_ratio"], rows["upper_ratio"], color="0.9", label="bounds")
+    one.set(xlabel="fraction", ylabel="conductivity over the matrix's", yscale="log", title="contrast 100")
+    one.legend(fontsize=7)
+    rows = _with_elements(df)
+    rows = rows[rows["apart_percent"].notna()]
+    names = [f"{r.part}, {r.contrast:g}" for r in rows.itertuples()]
+    places = {name: k for k, name in enumerate(dict.fromkeys(names))}
+    marks["fft-plain"] = "v"
+    for name in ("dem", "fft", "fft-plain"):
+        mine = (rows["name"] == name).to_numpy()
+        where = [places[each] for each, take in zip(names, mine, strict=True) if take]
+        other.plot(rows["apart_percent"][mine], where, marks[name], label=methods.all_methods()[name].title)
+    other.axvline(0.0, color="0.6", lw=0.8)
+    other.set(yticks=range(len(places)), yticklabels=list(places), xlabel="distance from finite elements, %")
+    other.legend(fontsize=8)
+    return figure
