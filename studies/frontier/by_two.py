@@ -12,7 +12,7 @@ from __future__ import annotations
 import csv
 import sys
 
-from demheat import dem
+from demheat import dem, referee
 from demheat.runtime.paths import replaced
 from references import fem
 from studies.frontier.scenes import scene_of
@@ -31,7 +31,7 @@ def known(name: str) -> dict:
     """What two methods say of a scene."""
     found = sorted((_limit(name, each) for each in SCENES[name]), key=lambda each: each[1])
     (k, half, by), (other, _, beside) = found
-    off = max(abs(other / k - 1), half / k)
+    off = max(abs(referee.value_error(other, k)), half / k)
     return dict(zip(COLUMNS, (name, k, off, by, beside, other, half), strict=True))
 
 
