@@ -63,8 +63,6 @@ REFUSING = {
     "network": lambda scene, _: solve_steady(None, scene),
     "negligible": lambda scene, _: negligible(scene, 1e-3),
     "reduced": lambda scene, _: reduced(scene),
-    "effective": lambda scene, _: demheat.effective(scene),
-    "recommend": lambda scene, _: demheat.recommend(scene),
     "bricks": lambda _, heated: list(fem.evolve(heated, [1.0], elements="hexahedra")),
 }
 

@@ -9,6 +9,7 @@ from solid_shapes import MATRIX, RING
 
 from demheat import Cylinder, Material, Scene, Sphere, Torus, solve
 from demheat.io import scenes
+from demheat.scene.shapes.level_set import ASIDE
 from references import bracket, exact, fem, fft, multipole
 
 MIDDLE = (0.5, 0.5, 0.5)
@@ -70,7 +71,8 @@ def test_it_is_the_level_set_of_its_function():
     points = np.random.default_rng(0).random((4000, 3))
     torus = replace(ring(5.0), material=RING.material)
     assert_array_equal(torus.contains(points), RING.contains(points))
-    assert_allclose(torus.distance(points), RING.distance(points), atol=1e-9)  # Newton's steps end there
+    # Feet may be that far aside of the nearest points; Newton's steps end nearer to the surface than 1e-9.
+    assert_allclose(torus.distance(points), RING.distance(points), rtol=ASIDE**2, atol=1e-9)
 
 
 def test_spheres_lie_in_its_hole_and_in_its_tube():

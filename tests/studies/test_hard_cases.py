@@ -97,9 +97,12 @@ def test_what_is_no_refusal_is_raised():
 def test_an_infinite_conductivity_is_found_or_refused():
     row = rows.steady("contrast", 7)
     found = json.loads(row["verdicts"])
-    assert [name for name, verdict, *_ in found if verdict == "verified"] == ["dem", "multipole"]
-    assert row["refused"] == row["cases"] - 2
-    assert all("is infinite" in why for _, verdict, *_, why in found if verdict == "refused")
+    outcome = {name: verdict for name, verdict, *_ in found}
+    assert {"dem", "fem", "fft-plain", "multipole"} <= {name for name in outcome if outcome[name] == "verified"}
+    # Two laws of networks and Eyre and Milton's scheme know none, single precision has too few digits.
+    assert {"dem-plain", "dem-calibrated", "fft-em"} <= {name for name in outcome if outcome[name] == "refused"}
+    assert all("perfect conductors" in why for _, verdict, *_, why in found if verdict == "refused")
+    assert row["wrong"] == 0
 
 
 def test_bounds_of_a_drawn_scene_hold_its_exact_value():
