@@ -232,9 +232,12 @@ def scaled(material: Material, contrast: float) -> Material:
     ----------
     material : Material
     contrast : float
+        From 0; `math.inf` makes a perfect conductor of what conducts alike in all directions.
     """
     check_material("material", material)
-    finite("contrast", contrast, "a finite number >= 0", lambda v: v >= 0)
+    if contrast == math.inf and material.isotropic and material.conductivity > 0:
+        return replace(material, conductivity=math.inf)
+    finite("contrast", contrast, "a finite number >= 0, or math.inf of what conducts alike", lambda v: v >= 0)
     k = material.conductivity if material.isotropic else material.tensor
     return replace(material, conductivity=k * contrast)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from demheat import Layer, gallery
+from demheat import Layer, Material, gallery
 
 PERIODIC_ONLY = (gallery.simple_cubic, gallery.body_centred, gallery.face_centred)
 EITHER = (
@@ -122,3 +122,11 @@ def test_dense_dispersion(ratio, periodic, tmp_path, monkeypatch):
 def test_bad_arguments(call, match):
     with pytest.raises(ValueError, match=match):
         call()
+
+
+def test_a_material_scaled_without_end_is_a_perfect_conductor():
+    assert gallery.scaled(gallery.HADDAD, math.inf).perfect
+    tensor = Material(((1.0, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 3.0)))
+    for wrong in (tensor, Material(0.0)):
+        with pytest.raises(ValueError, match="contrast = inf"):
+            gallery.scaled(wrong, math.inf)
