@@ -108,8 +108,10 @@ def knot():
 def made(part, contrast, fraction):
     """The scene of a part."""
     material = scaled(HADDAD, contrast)
-    if part == "checkerboard":
+    if part.endswith("checkerboard"):
         labels = np.indices((BLOCKS,) * 3).sum(axis=0) % 2
+        if part.startswith("random"):
+            labels = np.random.default_rng(SEED).permutation(labels.ravel()).reshape(labels.shape)
         return Scene.of_image(Image(labels, EDGE / BLOCKS, {0: HADDAD, 1: material}), gradient=ALONG_X)
     if part == "knot":
         points, triangles = knot()
