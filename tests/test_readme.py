@@ -38,33 +38,6 @@ def test_it_is_one_page():
     assert len(PAGE.splitlines()) < 100
 
 
-def test_the_verdict_is_that_of_the_rows():
-    """Numbers in words: how often the DEM is the cheapest to 0.1 %, on whose bodies, and where none gets there."""
-    from studies.harness import runner
-    from studies.harness.table import read_frame
-    from studies.speed_error import means
-    from studies.speed_error.scenes import TUNED
-
-    df = read_frame(runner.load("speed_error"), ROOT / "results" / "speed_error.csv")
-    found = means.beside_dem(df, 0.1)
-    every = {scene for factors in found.values() for scene in factors}
-    wins, losses = ({scene: f"{factor:.2g}" for scene, factor in found[kind].items()} for kind in ("wins", "losses"))
-    assert len(wins) == 8 and "at least cost on eight: one sphere of a sixth of the cube at four contrasts" in PAGE
-    thirds = sorted(float(factor) for scene, factor in wins.items() if scene.startswith("third"))
-    assert len(thirds) == 4 and f"the next costs {thirds[0]:g} to {thirds[-1]:g} times as much" in PAGE
-    assert f"24 unequal spheres ({wins['polydisperse']} times), 83 equal ones ({wins['83 spheres']} times)" in PAGE
-    assert wins["1000 spheres"] == "inf" and "1000, where no other gets there" in PAGE
-    assert f"a slab in time ({wins['slab']} times)" in PAGE
-    assert set(found["ties"]) == {"laminate", "beam"} and "It ties on layers and on a beam in time" in PAGE
-    assert set(losses) == {"half", "half at 100", "thin shell"}
-    assert (
-        f"{losses['half']} times the FFT at contrast 10, {losses['half at 100']} times finite elements at 100" in PAGE
-    )
-    assert f"a thin coat ({losses['thin shell']} times linear elements)" in PAGE
-    assert set(df["scene"].dropna()) - every == {"ball"} and "on a ball in time nothing gets there" in PAGE
-    assert set(wins) - set(TUNED) == {"1000 spheres", "slab"} and "Six of the eight are bodies" in PAGE
-
-
 def test_the_example_runs():
     (code,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
     names = {}

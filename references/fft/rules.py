@@ -118,7 +118,7 @@ def _warn_of_gaps(scene, rule, shape, voxel):
         warnings.warn(
             f"gaps beside inclusions {_listed(np.flatnonzero(near))} are not wide for voxels of {voxel:.3g} m: between "
             "good conductors, or bad ones, errors may be tens of percents; use more voxels",
-            stacklevel=5,
+            stacklevel=6,
         )
 
 

@@ -87,6 +87,21 @@ def table(df):
     return tables.lines(df)
 
 
+def by_accuracy(df):
+    """The same to three accuracies."""
+    from studies.frontier import tables
+
+    return tables.lines(df, targets=(1.0, 0.1, 0.01))
+
+
+def of_fluxes(df):
+    """The same of fluxes at points, on scenes whose fluxes are known."""
+    from studies.frontier import tables
+
+    found = tables.lines(df, "flux", (3.0, 1.0, 0.3))
+    return found[(found.drop(columns="scene") != "-").any(axis=1)]
+
+
 def notes(df):
     """Who wins, in words made of the rows."""
     from studies.frontier import means
@@ -96,6 +111,41 @@ def notes(df):
         return
     for quantity, target in (("conductivity", 1.0), ("conductivity", 0.1), ("conductivity", 0.01), ("flux", 1.0)):
         yield means.in_words(df, quantity, target)
+
+
+def verdict(df):
+    """In numbers, for the front page."""
+    from studies.frontier import means
+
+    return " ".join(means.counted(df, "conductivity", target) for target in (1.0, 0.1, 0.01))
+
+
+def verdict_on_fluxes(df):
+    """Of fluxes at points."""
+    from studies.frontier import means
+
+    return means.counted(df, "flux", 1.0)
+
+
+def multipoles(df):
+    """Among spheres alone."""
+    from studies.frontier import means
+
+    return means.multipoles(df)
+
+
+def advised(df):
+    """What `recommend` is worth."""
+    from studies.frontier import advice
+
+    return advice.in_words(df)
+
+
+def who_wins(df):
+    """With the names of scenes."""
+    from studies.frontier import means
+
+    return " ".join(means.in_words(df, "conductivity", target) for target in (1.0, 0.1, 0.01))
 
 
 def plot(df):

@@ -132,4 +132,54 @@ def in_words(df, quantity, target):
     return f"{head}, by {'; '.join(parts)}."
 
 
-__all__ = ["TARGETS", "best", "in_words", "longest", "reached", "scenes_of", "starred", "wins"]
+def multipoles(df):
+    """On how many scenes of spheres alone multipoles cost least, by accuracy, and how much dearer the next is."""
+    parts = []
+    for target in (1.0, 0.1, 0.01):
+        every = [reached(df, scene, "conductivity", target, any_shape=False) for scene in scenes_of(df)]
+        every = [ways for ways in every if any(WAYS[each.way].spheres for each in ways)]
+        won = [ways for ways in every if WAYS[ways[0].way].spheres]
+        factors = sorted(ways[1].cpu_s / ways[0].cpu_s for ways in won if len(ways) > 1)
+        said = f", where the next costs {_between(factors)} times as much" if factors else ""
+        parts.append(f"to {target:g} % on {len(won)} of {len(every)}{said}")
+    return f"Of scenes of spheres on which they get there, they cost least {'; '.join(parts)}."
+
+
+TITLES = {"dem": "the DEM", "fem": "finite elements", "fft": "the FFT"}
+
+
+def counted(df, quantity, target):
+    """The same in numbers, by method: of how many scenes, of those held back, and how much dearer the next one is."""
+    scenes = scenes_of(df)
+    every = {scene: best(df, scene, quantity, target) for scene in scenes}
+    found = {scene: each for scene, each in every.items() if each is not None}
+    parts = [_alone(name, found) for name in TITLES]
+    ties = [scene for scene, each in found.items() if len(each.tied) > 1]
+    parts.append(f"a tie on {len(ties)}" if ties else "")
+    parts.append(f"on {len(every) - len(found)} none gets there" if len(found) < len(every) else "")
+    return f"To {target:g} % of the {quantity}, of {len(scenes)} scenes: {'; '.join(filter(None, parts))}."
+
+
+def _alone(name, found):
+    """Scenes that one method wins without a tie."""
+    won = [scene for scene, each in found.items() if len(each.tied) == 1 and each.first.family == name]
+    if not won:
+        return f"{TITLES[name]} on none"
+    others = sum(scene in HELD_BACK for scene in won)
+    each = f"{TITLES[name]} on {len(won)}, {others} of them held back"
+    factors = sorted(found[s].next.cpu_s / found[s].first.cpu_s for s in won if found[s].next is not None)
+    if not factors:
+        return f"{each}, where no other gets there"
+    return f"{each} (the next costs {_between(factors)} times as much{_none(len(won) - len(factors))})"
+
+
+def _between(factors):
+    low, high = f"{factors[0]:.2g}", f"{factors[-1]:.2g}"
+    return low if low == high else f"{low} to {high}"
+
+
+def _none(number):
+    return f"; on {number} no other gets there" if number else ""
+
+
+__all__ = ["TARGETS", "best", "counted", "in_words", "longest", "multipoles", "reached", "scenes_of", "starred", "wins"]

@@ -6,13 +6,13 @@ from studies.frontier import means
 from studies.frontier.search import TARGETS
 
 
-def lines(df):
-    """The cheapest way for any shape to each accuracy of the conductivity, and the next."""
+def lines(df, quantity="conductivity", targets=TARGETS):
+    """The cheapest way for any shape to each accuracy, and the next."""
     import pandas as pd
 
     found = []
     for scene in means.scenes_of(df):
-        cells = {f"{target:g} %": cell(means.best(df, scene, "conductivity", target)) for target in TARGETS}
+        cells = {f"{target:g} %": cell(means.best(df, scene, quantity, target)) for target in targets}
         found.append({"scene": means.starred(scene), **cells})
     return pd.DataFrame(found)
 

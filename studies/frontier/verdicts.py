@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from studies.frontier import means
+import math
+import statistics
+
+from studies.frontier import advice, means
 
 # Set before any search: the DEM the cheapest for any shape, on so many scenes.
 GUESSES = (("conductivity", 0.1, 8), ("flux", 1.0, 8))
@@ -32,3 +35,15 @@ def all_claims(df):
             count = len(means.wins(df, quantity, target, means.scenes_of(df)).get("dem", ()))
             text = f"Scenes on which the DEM is the cheapest for any shape, or ties, to {target:g} % of the {quantity}"
             yield text, count, f">= {least}"
+    if means.searched(df):
+        yield from _advised(df)
+
+
+def _advised(df):
+    """How good `recommend` is on scenes that none of its laws was fitted to; limits set before."""
+    found = list(advice.advices(df))
+    there = [each for each in found if each.found < math.inf]
+    yield "recommend: scenes and accuracies where what it names was not found to get there", len(found) - len(there), 3
+    yield "recommend: cost of what it names over the least, largest", max((e.factor for e in there), default=None), 5.0
+    off = sorted(each.off for each in there)
+    yield "recommend: its guess of a cost and what was found, factor between, median", statistics.median(off), 3.0

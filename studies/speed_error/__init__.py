@@ -30,8 +30,8 @@ FAILS = {
     ),
 }
 
-__all__ = ["CASES", "PAPER", "QUICK", "TIMEOUT", "by_accuracy", "claims", "notes", "plot", "run", "table", "warm_up",
-           "words"]  # fmt: skip
+__all__ = ["CASES", "PAPER", "QUICK", "TIMEOUT", "claims", "in_time", "notes", "packing", "plot", "run", "table",
+           "warm_up"]  # fmt: skip
 # Methods of a quick run, at their coarsest, on scenes besides the first.
 FEW = {
     "third at 0.01": ("dem", "fem", "fft"),
@@ -83,7 +83,7 @@ def warm_up(name, particles=None, seed=None, scene=None, *, method, **solver):
 
 
 def claims(df):
-    """Kernels beside their peers on the same data; how many methods reach 0.1 %; what the laws are worth.
+    """Kernels beside their peers on the same data; errors in time; what the laws are worth.
 
     A kernel must not be slower than its peer. Costs of a quick run are too small to judge. Limits of the laws were set
     before they were fitted: of scenes left out nine errors in ten within a factor of 10, nine costs within 3. When
@@ -96,53 +96,32 @@ def claims(df):
 
 
 def table(df):
-    """The cheapest way to an accuracy, with all costs counted and with the DEM's beside it.
+    """The cheapest way to an accuracy in time, with all costs counted and with the DEM's beside it.
 
-    Of each method that resolution counts from which on every finer one stays within the target. "At the target" are
-    CPU seconds that the target itself would cost, by a power law between that resolution and the next coarser one,
-    which misses it; all factors are of these. Errors of fields are root mean squares at 400 random points, in % of the
-    span and of the mean flux; their costs count the asking. Seconds of the DEM count its packing, where one is made.
-    "next" is the cheapest method that costs over 1.5 times as much: costs nearer to each other than that are a tie.
-    "any shape" is the cheapest without multipoles, which know spheres alone, and all that tie with it.
+    What steady scenes cost at an accuracy is searched for in study `frontier`. Of each method that resolution counts
+    from which on every finer one stays within the target. "At the target" are CPU seconds that the target itself would
+    cost, by a power law between that resolution and the next coarser one, which misses it; all factors are of these.
+    Errors are root mean squares at 400 random points at the worst time, in % of the span. Seconds of the DEM count its
+    packing, where one is made. "next" is the cheapest method that costs over 1.5 times as much: costs nearer to each
+    other than that are a tie.
     """
     from studies.speed_error.tables import lines
 
     return lines(df)
 
 
-def by_accuracy(df):
-    """The cheapest method for any shape by scene and accuracy, and how many times as much the next or the DEM costs."""
+def in_time(df):
+    """The cheapest method by scene and accuracy, and how many times as much the next or the DEM costs."""
     from studies.speed_error import tables
 
     return tables.by_accuracy(df)
 
 
 def notes(df):
-    """Where the DEM wins and loses, in words made of the rows."""
+    """Where the DEM wins and loses in time, in words made of the rows."""
     from studies.speed_error import means
 
     return [means.in_words(df, target) for target in means.TARGETS]
-
-
-def words(df):
-    """Which methods for any shape get to a tenth of a per cent at least cost, and on how many scenes."""
-    from studies.speed_error import means
-
-    return means.counts_in_words(df, 0.1)
-
-
-def losses(df):
-    """On how many scenes some other method for any shape is cheaper than the DEM, by more than a tie, by accuracy."""
-    from studies.speed_error import means
-
-    return means.losses_in_words(df)
-
-
-def own_rule(df):
-    """What the FFT's own rule does at high contrast, which no row of the table has."""
-    from studies.speed_error import links
-
-    return links.in_words()
 
 
 def packing(df):
@@ -152,25 +131,8 @@ def packing(df):
     return means.packing_in_words(df)
 
 
-def who_wins(df):
-    """Where the DEM wins and loses to each accuracy."""
-    return " ".join(notes(df))
-
-
-def bandwidth(df):
-    """How the memory's bandwidth varied between rows."""
-    return f"{df['triad_gbs'].max() / df['triad_gbs'].min():.2g} times"
-
-
-def ties(df):
-    """What two solves that do the same differ by."""
-    from studies.speed_error import means
-
-    return means.ties_in_words(df)
-
-
 def plot(df):
-    """Error against CPU time, a panel for each scene, and of the flux at points for two of them."""
+    """Error against CPU time, a panel for each scene in time."""
     from studies.speed_error.figure import draw
 
     return draw(df)

@@ -10,13 +10,11 @@ from pathlib import Path
 from studies.harness import methods
 from studies.speed_error.cases import STEADY, TIMEOUT, VOXELS
 
-__all__ = ["CASES", "FILE", "QUICK", "TIMEOUT", "claims", "in_words", "plot", "run", "warm_up"]
+__all__ = ["CASES", "FILE", "QUICK", "TIMEOUT", "claims", "plot", "run", "warm_up"]
 FILE = Path(__file__).with_name("links.csv")
 # Layers get laminates; a thousand spheres cost more than all others together.
 LEFT_OUT = ("laminate", "1000 spheres")
 SCENES = [scene for scene in STEADY if scene not in LEFT_OUT]
-# Where the solver takes links by itself.
-TAKEN = ("half at 100", "third at 1000", "third at infinity")
 CASES = [methods.case("fft-links", scene=scene, voxels=voxels) for scene in SCENES for voxels in VOXELS]
 
 
@@ -49,16 +47,3 @@ def plot(df):
 def claims(df):
     """None: the laws are judged as those of other methods."""
     return []
-
-
-def in_words():
-    """Errors and costs by resolution where the solver takes links by itself."""
-    from studies.harness import runner
-    from studies.harness.table import read_frame
-
-    df, parts = read_frame(runner.load("speed_error.links"), FILE), []
-    for scene in TAKEN:
-        rows = df[df["scene"] == scene].sort_values("voxels")
-        errors = ", ".join(f"{abs(error):.2g}" for error in rows["error_percent"])
-        parts.append(f"`{scene}` {errors} % in {', '.join(f'{cpu:.2g}' for cpu in rows['cpu_s'])} CPU-seconds")
-    return f"with {', '.join(f'{each}^3' for each in VOXELS)} voxels on {'; on '.join(parts)}"

@@ -1,4 +1,4 @@
-"""Lines of the table: the cheapest method for each scene and target."""
+"""Lines of the table: the cheapest method for each scene in time and target."""
 
 from __future__ import annotations
 
@@ -6,21 +6,13 @@ import pandas as pd
 
 from studies.speed_error import means
 
-# Of fields at points one target each: fluxes are of first order, so that hardly any method has a hundredth of a per
-# cent of them.
-OF_FIELDS = {"temperature": (0.1,), "flux": (1.0,)}
-
 
 def lines(df):
-    """One line for each scene, quantity and target."""
-    parts = [means.winners(df), *(means.winners(df, name, targets) for name, targets in OF_FIELDS.items())]
-    found = pd.concat([part for part in parts if len(part)])
-    second = pd.concat([_any_shape(df, "conductivity", means.TARGETS)])
-    keys = zip(found["scene"], found["quantity"], found["target"], strict=True)
+    """One line for each scene and target."""
+    found = means.winners(df)
     return pd.DataFrame(
         {
             "scene": found["scene"],
-            "of the": found["quantity"],
             "target, %": found["target"],
             "cheapest": found["name"].map(means.label),
             "resolution": found["resolution"],
@@ -32,17 +24,15 @@ def lines(df):
             "unknowns": found["unknowns"],
             "DEM's cost over it": found["dem"].map(_times),
             "next": [_next(row) for row in found.itertuples()],
-            "any shape": [second.get(key, "") for key in keys],
         }
     )
 
 
 def by_accuracy(df):
-    """One line for each scene, a column for each target: the cheapest method for any shape, and others beside it."""
-    best = means.winners(means.without_multipoles(df))
+    """One line for each scene, a column for each target: the cheapest method, and others beside it."""
+    best = means.winners(df)
     best = best.assign(cell=[_cell(row) for row in best.itertuples()])
     wide = best.pivot(index="scene", columns="target", values="cell").reindex(best["scene"].unique())
-    wide.index = wide.index.map(means.starred)
     return wide[sorted(wide.columns, reverse=True)].rename(columns=lambda target: f"{target:g} %").reset_index()
 
 
@@ -58,13 +48,6 @@ def _cell(row):
 def _next(row):
     """The cheapest method that does not tie, and how many times as much it costs."""
     return f"next {means.label(row.next)}, {row.margin:.2g} times" if row.next else ""
-
-
-def _any_shape(df, quantity, targets):
-    """The cheapest methods that are not of spheres alone, by scene, quantity and target."""
-    best = means.winners(means.without_multipoles(df), quantity, targets)
-    said = [f"{' or '.join(map(means.label, row.tied))}, {row.at_target_s:.2g} s" for row in best.itertuples()]
-    return pd.Series(said, index=list(zip(best["scene"], best["quantity"], best["target"], strict=True)), dtype=object)
 
 
 def _times(ratio):

@@ -8,10 +8,8 @@ from demheat import referee
 from studies.harness.pick import pick, present
 from studies.speed_error import laws, means
 from studies.speed_error.cases import COMPARED, MARCHED, TIGHT, TO_LIMIT
-from studies.speed_error.scenes import IN_TIME, STEADY
+from studies.speed_error.scenes import IN_TIME
 
-# Methods, at least, that reach a target on the two scenes that all methods know.
-SEVERAL = {"third": 3, "half": 3}
 # Errors of the DEM in time, % of the span.
 IN_TIME_LIMITS = {"slab": 0.1, "ball": 0.1, "beam": 0.015}
 # Solves that were run twice, at least, of which nine in ten say something.
@@ -25,13 +23,6 @@ SAID = {"error": "errors", "cpu_s": "CPU times"}
 def all_claims(df):
     """All claims whose rows are there."""
     yield from present([*_kernels(df), *_schemes(df)])
-    there = [name for name in STEADY if name in set(df["scene"])]
-    reach = {scene: len(means.cheapest(df[df["scene"] == scene], targets=(0.1,))) for scene in there}
-    for scene, least in SEVERAL.items():
-        if scene in reach:
-            yield f"Methods that reach 0.1 % on the scene {scene!r}", float(reach[scene]), f">= {least}"
-    if reach:
-        yield "Steady scenes on which no method reaches 0.1 %", float(sum(not count for count in reach.values())), "= 0"
     for scene in IN_TIME:
         most = MARCHED["particles"][-1]
         finest = pick(df, scene=scene, name="dem", particles=most)

@@ -6,7 +6,6 @@ import csv
 import io
 from fractions import Fraction
 
-from demheat.io.scenes.joined import joined
 from demheat.io.scenes.source import text_of
 from demheat.io.scenes.units import LENGTH, PLAIN, RESISTANCE, factor_of, scaled
 from demheat.io.words import as_toml, nearest, nearest_file
@@ -53,7 +52,11 @@ def spheres_of(table, materials, default, size) -> list[tuple[Sphere | Union, st
         table.value("join", bool, "true or false", False),
         _made(table, rows, materials, default, offset, shrunk),
     )
-    return joined(spheres, size, periodic=_is_cell(table)) if join else spheres
+    if not join:
+        return spheres
+    from demheat.io.scenes.joined import joined  # SciPy
+
+    return joined(spheres, size, periodic=_is_cell(table))
 
 
 def _is_cell(table):

@@ -81,7 +81,7 @@ def test_seconds_of_every_solve(name):
 
 # What is done of shapes without formulas, and how often at least: rounds of spreading points, cells, Newton's steps.
 SLOW = {
-    "ring": ("points on a surface", 2 * patterns.ROUNDS),
+    "ring": ("points on a surface", patterns.ROUNDS),
     "balls": ("points on a surface", 2 * patterns.ROUNDS),
     "ball": ("a level set", 100),
 }
