@@ -64,10 +64,14 @@ def reached(df, scene, quantity, target, *, any_shape=True):
         if any_shape and WAYS[row["way"]].spheres:
             continue
         for column in COLUMNS[quantity]:
-            cost = row.get(f"{column}_{target:g}_s", np.nan)
-            if cost == cost:
-                told = _told(row, column, target)
-                found.append(Reached(row["way"], column == "extrapolated", cost, told[5] or 0.0, told[0], told[4]))
+            costs = {each: row.get(f"{column}_{each:g}_s", np.nan) for each in TARGETS if each <= target}
+            costs = {each: cost for each, cost in costs.items() if cost == cost}
+            if costs:
+                # A coarser value need not be the cheaper one: what gets farther gets there, too.
+                cheapest = min(costs, key=lambda each: costs[each])
+                told = _told(row, column, cheapest)
+                extrapolated = column == "extrapolated"
+                found.append(Reached(row["way"], extrapolated, costs[cheapest], told[5] or 0.0, told[0], told[4]))
     return sorted(found, key=lambda each: each.cpu_s)
 
 
