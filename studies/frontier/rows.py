@@ -57,23 +57,20 @@ def searched(name: str, way: str, seconds: float) -> dict:
 def at_point(name: str, way: str) -> dict:
     """Conductivity at the value of the knob that stands for the row, and what that is extrapolated to; no costs."""
     how, scene = WAYS[way], scene_of(name)
-    k = limit = math.nan
+    row = {"point": how.point}
     # Elements that are too coarse there: finer ones of the search need not be.
     with budget(MOST_S), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=QUIET)
         try:
             field = load(how.method).solve(scene, **knobs_at(how, how.point, scene))
-            k, limit = field.conductivity, _limit(field) if how.extrapolates else math.nan
+            row["point_k"] = field.conductivity
+            if how.extrapolates and math.isfinite(limit := _limit(field)):
+                row["point_limit_k"] = limit
         except NotImplementedError:
             raise
         except (ValueError, RuntimeError) as error:
-            return {
-                "point": how.point,
-                "point_k": k,
-                "point_limit_k": limit,
-                "point_note": " ".join(str(error).split()),
-            }
-    return {"point": how.point, "point_k": k, "point_limit_k": limit}
+            row["point_note"] = " ".join(str(error).split())
+    return row
 
 
 def _point(way, scene, truth, value, wanted):
