@@ -107,7 +107,13 @@ ROWS = {"packing": EIGHT, "indptr": np.zeros(9, np.int64), "indices": np.empty(0
 SOLVED = exact.solve(WALLED, points_per_axis=2)
 TWO = {"k_matrix": 1.0, "k_inclusion": 2.0, "fraction": 0.1}
 TWO_BAD = {"k_matrix": ARRAY, "k_inclusion": ARRAY, "fraction": SHARE}
-CUBIC = {"contrast": PART, "fraction": POSITIVE, "edge": POSITIVE, "matrix": MATERIAL, "axis": (*WHOLE, 3)}
+CUBIC = {
+    "contrast": without(PART, INF),
+    "fraction": POSITIVE,
+    "edge": POSITIVE,
+    "matrix": MATERIAL,
+    "axis": (*WHOLE, 3),
+}
 FACTORS = (
     None,
     "a",
@@ -131,7 +137,7 @@ BOUNDS = ("maxwell", "hashin_shtrikman", "bruggeman", "bruggeman_differential", 
 
 # Function, good arguments, and what is bad of which.
 TABLE = [
-    (demheat.Material, {"conductivity": 1.0}, {"conductivity": tuple(each for each in PART if not (isinstance(each, float) and each == INF)), "density": or_none(POSITIVE), "heat_capacity": or_none(POSITIVE)}),
+    (demheat.Material, {"conductivity": 1.0}, {"conductivity": without(PART, INF), "density": or_none(POSITIVE), "heat_capacity": or_none(POSITIVE)}),
     (demheat.Material, {"conductivity": 1.0}, {"dependence": or_none(FACTORS)}),
     (demheat.Image, {"labels": np.zeros((2, 2, 2), int), "voxel": 0.1, "materials": {0: OTHER}}, {"labels": (None, "a", 0.5, np.zeros((2, 2)), np.zeros((2, 2, 2)), np.ones((2, 2, 2), int), np.zeros((0, 2, 2), int)), "voxel": (*POSITIVE, (0.1, 0.1)), "materials": (None, [OTHER], {"a": OTHER}, {0: 1.0}, {})}),
     (demheat.Dependence, {"points": [(0.0, 1.0), (1.0, 2.0)]}, {"points": FACTORS}),
@@ -169,15 +175,15 @@ TABLE = [
     (evolve, {"scene": WARMING, "times": [1.0], "law": "calibrated", "allow_few": True}, {"integrator": WORD, "accuracy": POSITIVE, "step": or_none(POSITIVE), "wall": or_none(WORD), "allow_few": FLAG}),
     (network_of, {"scene": CELL, "packing": EIGHT, "law": demheat.Laguerre()}, {"scene": OBJECT, "packing": OBJECT, "law": WORD}),
     (gallery.slab, {}, {"size": SIDES, "material": MATERIAL, "periodic": FLAG, "axis": (*WHOLE, 3), "temperatures": PAIR}),
-    (gallery.laminate, {}, {"direction": WORD, "contrast": PART, "layers": COUNT, "edge": POSITIVE, "matrix": MATERIAL, "axis": (*WHOLE, 3), "periodic": FLAG}),
-    (gallery.sphere_in_cube, {}, {"contrast": PART, "radius": or_none(POSITIVE), "fraction": or_none(POSITIVE), "edge": POSITIVE, "matrix": MATERIAL, "temperatures": PAIR}),
+    (gallery.laminate, {}, {"direction": WORD, "contrast": without(PART, INF), "layers": COUNT, "edge": POSITIVE, "matrix": MATERIAL, "axis": (*WHOLE, 3), "periodic": FLAG}),
+    (gallery.sphere_in_cube, {}, {"contrast": without(PART, INF), "radius": or_none(POSITIVE), "fraction": or_none(POSITIVE), "edge": POSITIVE, "matrix": MATERIAL, "temperatures": PAIR}),
     (gallery.simple_cubic, {}, CUBIC),
     (gallery.body_centred, {}, CUBIC),
     (gallery.face_centred, {}, CUBIC),
     (gallery.coated_sphere, {}, {"core": PART, "shell": PART, "radius": POSITIVE, "core_fraction": (*POSITIVE, 1.0), "center": VECTOR, "edge": POSITIVE}),
     (gallery.random_dispersion, {}, {"count": or_none(COUNT), "fraction": or_none(POSITIVE), "diameter": POSITIVE, "gap": PART, "seed": WHOLE, "edge": POSITIVE, "matrix": MATERIAL, "inclusion": MATERIAL, "periodic": FLAG}),
     (gallery.dispersion, {"count": 4}, {"count": COUNT, "fraction": POSITIVE, "ratio": POSITIVE, "gap": PART, "seed": WHOLE, "edge": POSITIVE, "matrix": MATERIAL, "inclusion": MATERIAL, "periodic": FLAG}),
-    (gallery.scaled, {"material": METAL, "contrast": 2.0}, {"material": MATERIAL, "contrast": PART}),
+    (gallery.scaled, {"material": METAL, "contrast": 2.0}, {"material": MATERIAL, "contrast": without(PART, INF)}),
     (gallery.loaded, {"size": (1, 1, 1)}, {"size": VECTOR, "periodic": FLAG, "axis": (*WHOLE, 3), "temperatures": PAIR}),
     (dispersion.dispersion, {"number": 4}, {"number": or_none(COUNT), "fraction": POSITIVE, "size": SIDES, "radii": RADII, "periodic": FLAG, "gap": PART, "method": WORD, "seed": WHOLE}),
     (dispersion.dispersion, {}, {"ratio": or_none(POSITIVE), "folder": (5, True, [])}),

@@ -12,6 +12,9 @@ of P and D (Torquato, Hyun and Donev 2002).
 
 import math
 
+import numpy as np
+
+from demheat import referee
 from studies.harness import methods
 from studies.harness.pick import largest, pick, present
 
@@ -161,7 +164,9 @@ def _claims(df):
     yield "checkerboards: largest change to bricks of half the size, %", _halved(df), 10.0
     yield "checkerboard in order: contrast .01 beside 100, %", _swapped(df), 0.01
     third = pick(df, name="fem", contrast=0.0, fraction=HALF)
-    third = third.assign(third_percent=100 * (3 * third["k_ratio"] - 1)) if len(third) else third
+    third = third.assign(
+        third_percent=100 * referee.value_error(third["k_ratio"].to_numpy(), np.full(len(third), 1 / 3))
+    )
     yield "half labyrinths that do not conduct, finite elements: off a third, %", largest(third, "third_percent"), 1.5
 
 
@@ -174,7 +179,11 @@ def _with_elements(df):
         where = {key: _none(row.get(key)) for key in ("part", "contrast", "fraction")}
         elements = pick(df, name="fem", **where)
         best = elements[elements["size"] == elements["size"].min()]["k_ratio"] if len(elements) else ()
-        off = 100 * (row["k_ratio"] / float(best.iloc[0]) - 1) if len(best) and float(best.iloc[0]) else float("nan")
+        off = (
+            100 * referee.value_error(row["k_ratio"], float(best.iloc[0]))
+            if len(best) and float(best.iloc[0])
+            else float("nan")
+        )
         apart.append(off if row["name"] != "fem" else float("nan"))
         finer.append(off if row["name"] == "fem" and row["size"] > elements["size"].min() else float("nan"))
     return df.assign(group=group, apart_percent=apart, finer_percent=finer)
@@ -208,7 +217,7 @@ def _dual(df):
             other = pick(df, name="fem", part=part, contrast=GOOD)
             other = other[(other["fraction"] - (1 - fraction)).abs() < 1e-9].sort_values("size")["k_ratio"]
             if len(one) and len(other):
-                off = abs(100 * (float(one.iloc[0]) / (BAD * float(other.iloc[-1])) - 1))
+                off = abs(100 * referee.value_error(float(one.iloc[0]), BAD * float(other.iloc[-1])))
                 worst = off if worst is None else max(worst, off)
     return worst
 
@@ -223,7 +232,13 @@ def _boards(df, part):
 def _halved(df):
     """Largest change of a checkerboard's conductivity when its bricks are halved, %."""
     both = [each for each in (_boards(df, part) for part in BOARDS) if each.shape[1] == len(BRICKS)]
-    return max((float(abs(100 * (each.iloc[:, 1] / each.iloc[:, 0] - 1)).max()) for each in both), default=None)
+    return max(
+        (
+            float(abs(100 * referee.value_error(each.iloc[:, 1].to_numpy(), each.iloc[:, 0].to_numpy())).max())
+            for each in both
+        ),
+        default=None,
+    )
 
 
 def _swapped(df):
@@ -231,7 +246,7 @@ def _swapped(df):
     each = _boards(df, BOARDS[0])
     if not {BAD, GOOD} <= set(each.index):
         return None
-    return float(abs(100 * (each.loc[BAD] / (BAD * each.loc[GOOD]) - 1)).max())
+    return float(abs(100 * referee.value_error(each.loc[BAD].to_numpy(), BAD * each.loc[GOOD].to_numpy())).max())
 
 
 def table(df):

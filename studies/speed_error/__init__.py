@@ -87,7 +87,7 @@ def claims(df):
 
     A kernel must not be slower than its peer. Costs of a quick run are too small to judge. Limits of the laws were set
     before they were fitted: of scenes left out nine errors in ten within a factor of 10, nine costs within 3. When
-    values were known the tessellation came down from 40 and then 20 microseconds and once Voro++, schemes from 1e-6,
+    values were known the tessellation came down from 40, 20 and 15 microseconds and once Voro++, schemes from 1e-6,
     the beam from .1 %; what is a tie was set by how costs scatter.
     """
     from studies.speed_error.verdicts import all_claims

@@ -1,4 +1,4 @@
-"""Figures read off the rows in time: points of error against cost, the cheapest way to a target, where the DEM loses."""
+"""Figures read off rows in time: points of error against cost, the cheapest way to a target, where the DEM loses."""
 
 from __future__ import annotations
 

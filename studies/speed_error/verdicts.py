@@ -39,7 +39,7 @@ def _kernels(df):
     row = pick(df, name="tessellation", particles=100_000)
     if len(row):
         ours, theirs = row["us_per_particle"].iloc[0], row["peer_us_per_particle"].iloc[0]
-        yield "Laguerre tessellation of 100000 particles: CPU microseconds per particle", ours, 15.0
+        yield "Laguerre tessellation of 100000 particles: CPU microseconds per particle", ours, 10.0
         if theirs == theirs:
             yield "Laguerre tessellation of 100000 particles: CPU time over that of Voro++", ours / theirs, 0.4
     row = pick(df, name="steady", particles=1_000_000)
