@@ -90,8 +90,8 @@ def table(df):
     """The cheapest way for any shape to each accuracy of the conductivity, in processor seconds, and the next method.
 
     Methods tie where their runs scatter by as much as their costs differ, or where these are within 1.2 times, as
-    values of a knob are tried no nearer. "-": nobody gets there within the seconds of the search. *: constants of the
-    DEM were found on this body, or on it at other contrasts.
+    values of a knob are tried no nearer. "-": nobody gets there within the seconds of the search; "?": the truth is
+    not known three times better. *: constants of the DEM were found on this body, or on it at other contrasts.
     """
     from studies.frontier import tables
 
@@ -110,7 +110,7 @@ def of_fluxes(df):
     from studies.frontier import tables
 
     found = tables.lines(df, "flux", (3.0, 1.0, 0.3))
-    return found[(found.drop(columns="scene") != "-").any(axis=1)]
+    return found[~found.drop(columns="scene").isin(["-", "?"]).all(axis=1)]
 
 
 def notes(df):

@@ -121,6 +121,14 @@ def scenes_of(df, *, held_back=False):
     return [scene for scene in (HELD_BACK if held_back else SCENES) if scene in there]
 
 
+def judged(df, quantity, target):
+    """Scenes of which the truth is known so well that a target can be judged, in order."""
+    column = df.get(quantity)
+    told = {} if column is None else column.dropna().map(json.loads)
+    there = {df.at[at, "scene"] for at, each in dict(told).items() if f"{target:g}" in each}
+    return [scene for scene in scenes_of(df) if scene in there]
+
+
 def starred(scene):
     """A star stands at scenes on which constants of the DEM were found, or on their body at another contrast."""
     return f"{scene} *" if scene in TUNED else scene
@@ -128,7 +136,7 @@ def starred(scene):
 
 def in_words(df, quantity, target):
     """Who wins on how many scenes, as a sentence."""
-    scenes = scenes_of(df)
+    scenes = judged(df, quantity, target)
     found = wins(df, quantity, target, scenes)
     named = {"dem": "DEM", "fem": "FEM", "fft": "FFT", "": "nobody"}
     parts = [f"{named[name]} on {len(each)} ({', '.join(map(starred, each))})" for name, each in found.items()]
@@ -154,14 +162,15 @@ TITLES = {"dem": "the DEM", "fem": "finite elements", "fft": "the FFT"}
 
 def counted(df, quantity, target):
     """The same in numbers, by method: of how many scenes, of those held back, and how much dearer the next one is."""
-    scenes = scenes_of(df)
+    scenes = judged(df, quantity, target)
     every = {scene: best(df, scene, quantity, target) for scene in scenes}
     found = {scene: each for scene, each in every.items() if each is not None}
     parts = [_alone(name, found) for name in TITLES]
     ties = [scene for scene, each in found.items() if len(each.tied) > 1]
     parts.append(f"a tie on {len(ties)}" if ties else "")
     parts.append(f"on {len(every) - len(found)} none gets there" if len(found) < len(every) else "")
-    return f"To {target:g} % of the {quantity}, of {len(scenes)} scenes: {'; '.join(filter(None, parts))}."
+    head = f"To {target:g} % of the {quantity}, of {len(scenes)} scenes where it can be judged"
+    return f"{head}: {'; '.join(filter(None, parts))}."
 
 
 def _alone(name, found):
@@ -186,4 +195,16 @@ def _none(number):
     return f"; on {number} no other gets there" if number else ""
 
 
-__all__ = ["TARGETS", "best", "counted", "in_words", "longest", "multipoles", "reached", "scenes_of", "starred", "wins"]
+__all__ = [
+    "TARGETS",
+    "best",
+    "counted",
+    "in_words",
+    "judged",
+    "longest",
+    "multipoles",
+    "reached",
+    "scenes_of",
+    "starred",
+    "wins",
+]

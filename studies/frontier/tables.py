@@ -11,8 +11,12 @@ def lines(df, quantity="conductivity", targets=TARGETS):
     import pandas as pd
 
     found = []
+    known = {target: means.judged(df, quantity, target) for target in targets}
     for scene in means.scenes_of(df):
-        cells = {f"{target:g} %": cell(means.best(df, scene, quantity, target)) for target in targets}
+        cells = {
+            f"{target:g} %": cell(means.best(df, scene, quantity, target)) if scene in known[target] else "?"
+            for target in targets
+        }
         found.append({"scene": means.starred(scene), **cells})
     return pd.DataFrame(found)
 
