@@ -35,8 +35,8 @@ def test_who_wins_in_numbers():
     # 1.3 seconds are 1.3 times one, and runs scatter by a fifth each.
     assert said == (
         "To 0.1 % of the conductivity, of 4 scenes where it can be judged: the DEM on 1, 0 of them held back (the next "
-        "costs 5 times as much); finite elements on 1, 1 of them held back, where no other gets there; the FFT on none; "
-        "a tie on 1; on 1 none gets there."
+        "costs 5 times as much); finite elements on 1, 1 of them held back, where no other gets there; the FFT on "
+        "none; a tie on 1; on 1 none gets there."
     )
     assert means.judged(ROWS, "conductivity", 0.01) == []
 
