@@ -1,15 +1,21 @@
 """The surfaces of all spheres of a scene at once: patterns, gaps and tangent planes as flat arrays with owners."""
 
+import math
+from functools import cache
+
 import numpy as np
 
 from demheat.packing.twins import surfaces
 from demheat.packing.twins import surfaces_kernels as kernels
 from demheat.packing.twins.interfaces import pattern_count
+from demheat.powers import cube_root
 from demheat.runtime.threads import shared_out
 from demheat.scene.shapes.bins import ball_bins
 
 # Spheres, points and facets that a thread does at a time.
 SPHERES, POINTS, FACETS = 16, 8192, 1024
+# Other spheres are first looked for within so many mean distances between them, then within twice as many, and so on.
+NEAR = 1.0
 
 
 class Spheres:
@@ -20,11 +26,9 @@ class Spheres:
         self.centers = np.array([surface.shape.center for surface in surfaces]).reshape(-1, 3)
         self.radii = np.array([surface.shape.radius for surface in surfaces], dtype=float)
         self.balls = np.column_stack([self.centers, self.radii])
-        # A hair more: what lies at the reach is found.
-        wide = self.radii + reach * (1 + 1e-9)
-        self.bins = ball_bins(self.centers, wide, scene.size, periodic=scene.periodic)
+        self.bins = cache(self._bins)
         # Spheres that nearly meet their own images.
-        self.lonely = np.flatnonzero(scene.periodic & (self.radii + wide > min(scene.size)))
+        self.lonely = np.flatnonzero(scene.periodic & (2 * self.radii + _hair_more(reach) > min(scene.size)))
 
     def __len__(self):
         """Number of surfaces."""
@@ -55,17 +59,38 @@ class Spheres:
 
     def gap(self, points, own, kin, leader):
         """Distance of points to the nearest surface that is no kin, periodic images included, (n,) float array, m."""
-        gaps = np.full(len(points), np.inf)
-        where = points, kin, leader[: len(self)], self.balls, self.bins, self.reach
-        if len(self) and len(points) <= surfaces.FEW:
-            gaps = surfaces.nearest_gaps(*where)
-        elif len(self):
-            shared_out(kernels.nearest_gaps, len(points), *where, gaps, piece=POINTS)
+        gaps, kins = np.full(len(points), np.inf), leader[: len(self)]
+        for reach in self._reaches():
+            left = np.flatnonzero(np.isinf(gaps))
+            if len(left):
+                gaps[left] = self._gaps_within(reach, points[left], kin[left], kins)
         for number in self.lonely:
             mine = np.flatnonzero(own == number)
             if len(mine):
                 gaps[mine] = np.minimum(gaps[mine], self.surfaces[number].gap(points[mine], skip_self=True))
         return gaps
+
+    def _reaches(self):
+        """How far is looked for other spheres: near at first, for among many small ones a far reach meets them all."""
+        if not len(self):
+            return []
+        apart = cube_root(math.prod(self.scene.size) / len(self))
+        count = max(math.ceil(math.log2(self.reach / (NEAR * apart))), 0)
+        return [self.reach / 2**k for k in range(count, -1, -1)]
+
+    def _gaps_within(self, reach, points, kin, kins):
+        """Distance of points to the nearest sphere that is no kin, infinite beyond a reach."""
+        where = points, kin, kins, self.balls, self.bins(reach), reach
+        if len(points) <= surfaces.FEW:
+            return surfaces.nearest_gaps(*where)
+        gaps = np.empty(len(points))
+        shared_out(kernels.nearest_gaps, len(points), *where, gaps, piece=POINTS)
+        return gaps
+
+    def _bins(self, reach):
+        """Cells that know which spheres are within a reach."""
+        wide = self.radii + _hair_more(reach)
+        return ball_bins(self.centers, wide, self.scene.size, periodic=self.scene.periodic)
 
     def _cut(self, numbers):
         """Which of some spheres a wall cuts, (m,) bool array."""
@@ -73,6 +98,11 @@ class Spheres:
             return np.zeros(len(numbers), dtype=bool)
         centers, radii = self.centers[numbers], self.radii[numbers, None]
         return np.any((centers - radii < 0) | (centers + radii > self.scene.size), axis=1)
+
+
+def _hair_more(reach):
+    """What lies at the reach is found."""
+    return reach * (1 + 1e-9)
 
 
 def inscribed_radii(normals, count):

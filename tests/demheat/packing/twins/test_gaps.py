@@ -29,9 +29,11 @@ def scene(kind, periodic):
 
 
 @pytest.mark.parametrize("periodic", [True, False])
+# The farther reach is come to by way of a nearer one where spheres are many.
+@pytest.mark.parametrize("reach", [0.06, 0.4])
 @pytest.mark.parametrize("kind", ["few", "its own images", "equal", "unequal"])
-def test_gaps_are_those_of_one_surface_after_the_other(kind, periodic):
-    given, reach = scene(kind, periodic), 0.06
+def test_gaps_are_those_of_one_surface_after_the_other(kind, reach, periodic):
+    given = scene(kind, periodic)
     interfaces, surfaces = Interfaces(given, reach), surfaces_of(given)
     assert len(interfaces) == len(surfaces)
     points = np.random.default_rng(4).random((5000, 3))
@@ -45,6 +47,15 @@ def test_gaps_are_those_of_one_surface_after_the_other(kind, periodic):
         found, seen = interfaces.gap(on, np.full(len(on), number)), slow <= reach
         assert_allclose(found[seen], slow[seen], rtol=0, atol=1e-15)
         assert np.all(found[~seen] > reach)
+
+
+@pytest.mark.parametrize("reach", [0.1, 0.4, 3.0])
+def test_among_many_spheres_those_far_away_are_not_asked(reach):
+    interfaces = Interfaces(scene("equal", True), reach)
+    interfaces.gap(np.random.default_rng(4).random((5000, 3)))
+    # All have a neighbour nearer than the mean distance of .25, within which spheres are asked first.
+    assert interfaces.spheres.bins.cache_info().currsize == 1
+    assert len(interfaces.spheres.bins(min(interfaces.spheres._reaches())).balls) < 100 * 64
 
 
 def test_way_to_wall():
