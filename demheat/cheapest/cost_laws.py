@@ -1,14 +1,16 @@
-"""Laws of error and cost of each method, fitted by the study `speed_error` and kept beside this file in `laws.csv`.
+"""Laws of error and cost of each method, fitted by the study `frontier` and kept beside this file in `laws.csv`.
 
 The relative error of the conductivity is A (h/s)^p g: h the size of an element, s the scene's smallest width, and
 g = strength^a (1 + contrast)^b fraction^c gap^d; of multipoles, whose errors fall by a factor with each degree, (h/s)
 stands for exp(-2 degree acosh(1 + gap/2)), with which the waves between two equal spheres decay. The processor time is
-B unknowns^q (1 + contrast)^r, the unknowns u V/h^3 + v S/h^2 + w n with the box's volume V, the interfaces' surface S
-and the number n of inclusions. The measures of a scene are those of `demheat.cheapest.measures`.
+(B + u V/h^3 + v S/h^2 + w n + ...) (1 + contrast)^r with the box's volume V, the interfaces' surface S and the number n
+of inclusions; what follows are surfaces whose nearest points must be searched for, the number of such bodies, and
+surfaces of functions. The memory is a sum of the first of these. The measures of a scene are those of
+`demheat.cheapest.measures`.
 
-The laws say what to expect, not what is certain: nine rows in ten that they were fitted to lie within the factors
-`error_within` and `cost_within`, and of scenes unlike those one in ten lies farther off. They are for steady heat in
-boxes with spheres apart, on the machine of the study's rows; layers are exact with most methods.
+The laws say what to expect, not what is certain: nine values in ten that they were fitted to lie within the factors
+`error_within` and `cost_within`, and of scenes unlike those one in ten lies farther off. They are for steady heat, on
+the machine of the study's rows; layers are exact with most methods.
 """
 
 from __future__ import annotations
@@ -54,20 +56,35 @@ class Law(NamedTuple):
     fraction: float
     gap: float
     error_within: float  # Factor within which nine of ten fitted errors are
-    # bulk, surface, each: u, v and w
+    # base, bulk, surface, each: B, u, v and w, s
+    base: float
     bulk: float
     surface: float
     each: float
-    # cost, unknowns, stiffness: B in seconds, q and r
-    cost: float
-    unknowns: float
-    stiffness: float
+    # searched, each_searched, asked: The same of surfaces whose nearest points are no closed form, s
+    searched: float
+    each_searched: float
+    asked: float
+    stiffness: float  # r
     cost_within: float
-    bytes: float  # For each unknown, at the peak
+    # bulk_bytes, surface_bytes, each_bytes: At the peak
+    bulk_bytes: float
+    surface_bytes: float
+    each_bytes: float
     bytes_within: float
-    # rows, scenes: Rows and scenes that the law was fitted to
+    # rows, scenes: Values and scenes that the law was fitted to
     rows: int
     scenes: int
+
+    @property
+    def seconds(self) -> tuple[float, ...]:
+        """Of each of `size_terms`."""
+        return (self.base, self.bulk, self.surface, self.each, self.searched, self.each_searched, self.asked)
+
+    @property
+    def bytes(self) -> tuple[float, ...]:
+        """Of each of `size_terms`."""
+        return (0.0, self.bulk_bytes, self.surface_bytes, self.each_bytes, 0.0, 0.0, 0.0)
 
 
 class Predicted(NamedTuple):
@@ -126,17 +143,17 @@ def _value(law, m, refined):
 def predicted_by(law: Law, m: Measures, value: float) -> Predicted:
     """What a law predicts."""
     error = math.exp(error_terms(law.knob, m, value) @ _error_powers(law))
-    return _work(law, m, unknowns(law, m, value))._replace(error=float(error))
+    return Predicted(error, *_work(law, m, size_terms(law.knob, m, value)))
 
 
 def work(method: str, m: Measures, number: float) -> Predicted:
-    """What so many unknowns cost at the contrast of a scene; of the error nothing is known."""
-    return _work(law_of(method), m, number)
+    """What so many elements cost that no surface is looked for in; of the error nothing is known."""
+    return Predicted(math.nan, *_work(law_of(method), m, np.array([1.0, number, *[0.0] * 5])))
 
 
-def _work(law, m, number):
-    cpu_s = math.exp(cost_terms(m, number) @ _cost_powers(law))
-    return Predicted(math.nan, float(cpu_s), float(law.bytes * number))
+def _work(law, m, sizes):
+    cpu_s = sizes @ law.seconds * math.exp(law.stiffness * stiff_term(m))
+    return float(cpu_s), float(sizes @ law.bytes)
 
 
 def law_of(method: str) -> Law:
@@ -157,22 +174,18 @@ def error_terms(knob: str, m: Measures, value: float) -> np.ndarray:
     return np.array([1.0, refined, strength, math.log1p(m.contrast), fraction, math.log(min(m.gap, 1.0))])
 
 
-def cost_terms(m: Measures, number: float) -> np.ndarray:
-    """Logarithms that the law of the cost weighs, (3,) float array: 1, unknowns, 1 + contrast."""
-    return np.array([1.0, math.log(number), math.log1p(m.contrast)])
+def stiff_term(m: Measures) -> float:
+    """Logarithm that the law of the cost weighs."""
+    return math.log1p(m.contrast)
 
 
 def size_terms(knob: str, m: Measures, value: float) -> np.ndarray:
-    """Numbers that the unknowns are made of, (3,) float array: V/h^3, S/h^2, n; of multipoles the waves alone."""
+    """Numbers that cost and memory are made of, (7,) float array, see `Law.seconds`; of multipoles waves are the bulk."""
     if knob == DEGREE.knob:
-        return np.array([m.count * ((value + 1) ** 2 - 1), 0.0, 0.0])
+        return np.array([1.0, m.count * ((value + 1) ** 2 - 1), 0.0, m.count, 0.0, 0.0, 0.0])
     h = element(knob, m, value)
-    return np.array([(m.edge / h) ** 3, m.surface / h**2, m.count])
-
-
-def unknowns(law: Law, m: Measures, value: float) -> float:
-    """Number of unknowns by a law."""
-    return float(max(size_terms(law.knob, m, value) @ (law.bulk, law.surface, law.each), 1.0))
+    surfaces = np.array([m.surface, m.searched, m.asked]) / h**2
+    return np.array([1.0, (m.edge / h) ** 3, surfaces[0], m.count, surfaces[1], m.count_searched, surfaces[2]])
 
 
 def element(knob: str, m: Measures, value: float) -> float:
@@ -192,6 +205,3 @@ def _decay(m):
 def _error_powers(law):
     return np.array([math.log(law.error), law.refinement, law.strength, law.contrast, law.fraction, law.gap])
 
-
-def _cost_powers(law):
-    return np.array([math.log(law.cost), law.unknowns, law.stiffness])

@@ -30,7 +30,11 @@ class Measures(NamedTuple):
     strength: float
     contrast: float  # Largest |ln(k_i / k_o)|, of a pore that of a thousandth
     surface: float  # m2: Of all interfaces
+    # searched, asked: m2, of those whose nearest points are searched for, and of those of functions (`Shape.finding`)
+    searched: float
+    asked: float
     count: int  # Number of inclusions
+    count_searched: int
     gap: float  # Least gap between two spheres, or twice that to a wall, over the smaller one's radius
 
 
@@ -38,21 +42,27 @@ def measures(scene: Scene) -> Measures:
     """Measure a scene."""
     edge, shapes = scene.volume ** (1 / 3), scene.inclusions
     if not shapes:
-        return Measures(edge, edge, edge, 0.0, 0.0, 0.0, 0.0, 0, WIDEST)
+        return Measures(edge, edge, edge, *[0.0] * 6, 0, 0, WIDEST)
     inner, around = _neighbours(scene)
-    widths, volumes = extents(scene), np.array([_volume(scene, shape) for shape in shapes])
+    # What has no end is at most as wide as the box.
+    widths, volumes = np.minimum(extents(scene), edge), np.array([_volume(scene, shape) for shape in shapes])
     outermost = np.array(scene.parents()[1:]) == 0
     # Volume over width: of a layer half its two faces, of a ball a sixth of its surface, of a fibre a quarter.
     faces = np.array([2 if shape.flat else 6 if shape.bounded else 4 for shape in shapes])
+    surfaces = faces * volumes / widths
+    searched, asked = (np.array([shape.finding == how for shape in shapes]) for how in ("search", "function"))
     return Measures(
         edge=edge,
-        smallest=float(min(widths.min(), coats(scene).min(), edge)),
-        narrowest=float(min(widths.min(), edge)),
+        smallest=float(min(widths.min(), coats(scene).min())),
+        narrowest=float(widths.min()),
         fraction=float(volumes[outermost].sum() / scene.volume),
         strength=float(np.max(np.abs(inner - around) / (inner + 2 * around))),
         contrast=float(np.max(np.abs(_log_ratio(inner, around)))),
-        surface=float(np.sum(faces * volumes / widths)),
+        surface=float(surfaces.sum()),
+        searched=float(surfaces[searched].sum()),
+        asked=float(surfaces[asked].sum()),
         count=len(shapes),
+        count_searched=int(searched.sum()),
         gap=_gap(scene),
     )
 

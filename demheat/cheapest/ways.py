@@ -11,8 +11,9 @@ import numpy as np
 from demheat import dem
 from demheat.cheapest.cost_laws import ON_SPHERE, needed, predicted, work
 from demheat.cheapest.loads import Loads
-from demheat.cheapest.measures import PORE, measures
+from demheat.cheapest.measures import PORE, Measures, measures
 from demheat.runtime.extras import lacking
+from demheat.scene import Scene
 from demheat.scene.edges import SMOOTH, edge_order
 from demheat.scene.inputs import one_line
 from references import bracket, exact, fem, fft, multipole
@@ -28,6 +29,11 @@ HOMES = {
 }
 # Knobs that refine each, and what stands for an element's edge in them: value ~ edge^power.
 KNOBS = {"fem": ("size", 1.0), "fft": ("voxels", -1.0), "dem": ("particles", -3.0)}
+# What each is given besides: of what iterates to a hundredth of a per cent, the conductivity is within a millionth of
+# the grid's own (`fft.solve`).
+FIXED = {"fft": {"tolerance": 1e-3}}
+# Half intervals from which on that is as good as none.
+COARSE = 1e-4
 # What few methods take of a scene: those that are refined.
 TAKES = {
     "fem": ("resistance", "anisotropy", "dependence", "image", "perfect"),
@@ -97,7 +103,7 @@ def finer(way: Way, loads: Loads, missing: float, memory: float) -> Way:
     cost = predicted(law, part, _scaled(value, wanted, power))
     if cost.bytes > memory:
         return way._replace(refused=f"{told}; narrower ones would need {_gib(cost.bytes)}")
-    knobs = {knob: _scaled(value, max(wanted, SMALLEST), power)}
+    knobs = {**way.knobs, knob: _scaled(value, max(wanted, SMALLEST), power)}
     spent = _all(cost, loads, _has_limit(way.method, law, loads))
     return way._replace(knobs=knobs, cpu_s=spent, bytes=cost.bytes, doubt="", rounds=way.rounds + 1)
 
@@ -114,19 +120,15 @@ def _exact(loads, accuracy):
 
 
 def _multipole(loads, accuracy, memory):
-    # Loads what is heavy, as do the rules of the FFT.
-    from references.multipole.arrangement import arrange
-
     try:
-        for whole in loads.wholes.values():
-            arrange(whole, any_matrix=True)
+        found = [law_and_measures("multipole", whole) for whole in loads.wholes.values()]
     except NotImplementedError as error:
         return Way("multipole", {}, refused=one_line(error))
-    whole = loads.body
     knobs = {"accuracy": accuracy}
-    if not whole.inclusions:
+    if not loads.body.inclusions:
         return Way("multipole", knobs, accuracy)
-    cost = predicted("multipole", whole, needed("multipole", whole, accuracy, sure=False))
+    law, m = found[0]
+    cost = predicted(law, m, needed(law, m, accuracy, sure=False))
     return _within(Way("multipole", knobs, accuracy, len(loads.wholes) * cost.cpu_s, cost.bytes), memory)
 
 
@@ -138,7 +140,7 @@ def _refined(name, loads, accuracy, memory):
     except NotImplementedError as error:
         return Way(name, {}, refused=one_line(error))
     if loads.body.image is not None:
-        return on_image(name, loads, memory)
+        return on_image(name, loads, accuracy, memory)
     (knob, power), (law, part) = KNOBS[name], _law(name, loads)
     limit = _has_limit(name, law, loads)
     value = needed(law, part, accuracy / (ABOUT_LIMIT[name] if limit else INTERVAL), sure=False)
@@ -150,16 +152,20 @@ def _refined(name, loads, accuracy, memory):
             # What is left is paid for each inclusion, whatever the elements.
             break
         first = coarser
-    way = _within(Way(name, {knob: first}, cost.error, _all(cost, loads, limit), cost.bytes), memory)
+    way = _within(Way(name, {**_fixed(name, accuracy), knob: first}, cost.error, _all(cost, loads, limit), cost.bytes), memory)
     least = predicted(law, part, first).bytes
     return way._replace(refused=f"needs {_gib(least)} to begin with") if least > memory else way
 
 
-def on_image(name, loads, memory):
+def _fixed(name, accuracy):
+    return FIXED.get(name, {}) if accuracy >= COARSE else {}
+
+
+def on_image(name, loads, accuracy, memory):
     """A way on an image: voxels are its own, and are split where that is too coarse; by the FFT, the cheapest there."""
     if name != "fft":
         return Way(name, {}, doubt="on an image the FFT costs less")
-    way = _on_voxels(loads, 1)
+    way = _on_voxels(loads, 1, _fixed(name, accuracy))
     return way._replace(refused=f"needs {_gib(way.bytes)}") if way.bytes > memory else way
 
 
@@ -167,14 +173,15 @@ def finer_image(way, loads, missing, memory, told):
     """The same on voxels that are split further."""
     if way.method != "fft":
         return way._replace(refused=told)
-    parts = way.knobs["voxels"][0] // loads.body.image.shape[0]
-    finer = _on_voxels(loads, parts * min(max(math.ceil(missing / parts), 2), MOST_PARTS))
+    parts, fixed = way.knobs["voxels"][0] // loads.body.image.shape[0], dict(way.knobs)
+    del fixed["voxels"]
+    finer = _on_voxels(loads, parts * min(max(math.ceil(missing / parts), 2), MOST_PARTS), fixed)
     if finer.bytes > memory:
         return way._replace(refused=f"{told}; smaller ones would need {_gib(finer.bytes)}")
     return finer._replace(rounds=way.rounds + 1)
 
 
-def _on_voxels(loads, parts):
+def _on_voxels(loads, parts, fixed):
     """The FFT on the voxels of an image, each split into some parts along each axis."""
     k, shape = loads.body.mean_conductivities, [n * parts for n in loads.body.image.shape]
     contrast = math.log(k.max() / max(k.min(), k.max() / PORE)) if k.max() else 0.0
@@ -183,18 +190,29 @@ def _on_voxels(loads, parts):
     split = 9 * min(whole, BLOCK)
     costs = [work("fft-plain", m, number) for number in (whole, split)]
     cpu_s = len(loads.wholes) * sum(each.cpu_s for each in costs)
-    return Way("fft", {"voxels": tuple(shape)}, cpu_s=cpu_s, bytes=max(each.bytes for each in costs))
+    return Way("fft", {**fixed, "voxels": tuple(shape)}, cpu_s=cpu_s, bytes=max(each.bytes for each in costs))
 
 
 def _law(method, loads):
+    """Name of a method's law and the measures that it is asked of, those of the largest part."""
+    return law_and_measures(method, max(loads.parts.values(), key=lambda each: each.volume))
+
+
+def law_and_measures(method: str, scene: Scene) -> tuple[str, Measures]:
     """Name of a method's law, of the FFT that of the rule which its solver takes by itself, and what it is asked of."""
-    part = max(loads.parts.values(), key=lambda each: each.volume)
+    m = measures(scene)
     if method == "fft":
+        # Loads what is heavy, as do multipoles.
         from references.fft.rules import automatic
 
-        rule = automatic("cg", part, ENOUGH)
-        method = "fft" if rule == "laminate" else f"fft-{rule}"
-    return method, measures(part)
+        rule = automatic("cg", scene, ENOUGH)
+        return "fft" if rule == "laminate" else f"fft-{rule}", m
+    if method == "multipole":
+        from references.multipole.arrangement import arrange
+
+        # Mirror images in walls are spheres like others.
+        m = m._replace(count=len(arrange(scene, any_matrix=True).spheres.radii))
+    return method, m
 
 
 def _scaled(value, edge, power):

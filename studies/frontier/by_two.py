@@ -23,7 +23,9 @@ GIVEN = {
     "FEM": (fem, "size", 1 / 14),
     "DEM": (dem, "particles", 200_000),
 }
-SCENES = {"ellipsoids": ("FEM", "DEM"), "unions": ("FEM", "DEM"), "gyroid": ("FEM", "DEM")}
+SCENES = dict.fromkeys(
+    ("ellipsoids", "unions", "gyroid", "ellipsoids at 50", "joined at 0.1", "primitive at 20"), ("FEM", "DEM")
+)
 COLUMNS = ("scene", "conductivity", "off", "by", "and", "other", "half")
 
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from studies.frontier.scenes import SCENES
+from studies.frontier.scenes import FOR_LAWS, SCENES
 from studies.frontier.ways import WAYS
 
 # Processor seconds of a search, of a scene that is named, else of any.
 USUAL, BUDGET = 22.0, {"1000 spheres": 110.0, "5000 spheres": 80.0, "laminate": 5.0, "image": 8.0, "thin shell": 12.0}
+# Of a scene that is there for the laws alone.
+SHORT, LONGER = 8.0, {"3000 spheres": 60.0, "primitive at 20": 40.0}
+# Ways that laws are fitted to.
+LAWS = ("dem", "fem", "fft-loose", "multipole")
 # Of a quick run, beside the others.
 QUICK_SECONDS, QUICK_SCENES, QUICK_WAYS = (
     4.0,
@@ -23,13 +27,14 @@ LEFT_OUT = {
     "gyroid": ("fft-em",),
     # Elements around a thousand spheres take more memory than there is.
     "1000 spheres": ("fem", "fem-p1", "fft-em"),
+    "3000 spheres": ("fem",),
     "5000 spheres": ("fem", *RULES),
 }
 DEM_LIMIT = ("half", "half at 100", "83 spheres", "1000 spheres", "unequal, f = .5", "infinite")
 ONLY_SPHERES = (
     *("third", "third at 0.01", "third at 1000", "third at infinity", "half", "half at 100", "polydisperse"),
     *("83 spheres", "1000 spheres", "unequal, f = .5", "30 at 0.001", "infinite", "resistance", "box of 1:1:4"),
-    "5000 spheres",
+    *("5000 spheres", "box of 1:3:1", "10 pores", "3000 spheres"),
 )
 
 
@@ -41,6 +46,8 @@ def all_cases():
         for way, how in WAYS.items():
             if _fits(way, how, scene):
                 yield _case(scene, way, BUDGET.get(scene, USUAL))
+    for scene in FOR_LAWS:
+        yield from (_case(scene, way, LONGER.get(scene, SHORT)) for way in LAWS if _fits(way, WAYS[way], scene))
 
 
 def _fits(way, how, scene):

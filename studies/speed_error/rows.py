@@ -21,14 +21,12 @@ STATS = ("unknowns", "iterations", "residual", "integrator", "steps")
 
 def solved(name, *, method, **knobs):
     """Solve a scene by a method, the DEM from an empty packing cache and then again."""
-    if "degree" in knobs:
-        knobs["order"] = knobs.pop("degree")
     once = _march if name in IN_TIME else _steady
     with warnings.catch_warnings():
         # What coarse particles and voxels do not resolve is what the errors show.
         warnings.filterwarnings("ignore", message=".*(do not fit into gaps|no particle lies|thin|narrow|miss them)")
         if "particles" not in knobs:
-            return _or_refused(once, name, method=method, **knobs)
+            return once(name, method=method, **knobs)
         # Made before the packings of this row are kept apart.
         if name not in IN_TIME:
             exact_of(name)
@@ -36,16 +34,6 @@ def solved(name, *, method, **knobs):
             cold = once(name, method=method, **knobs)
             again = once(name, method=method, judged=False, **knobs)
     return cold | {f"cached_{key}": again[key] for key in AGAIN}
-
-
-def _or_refused(once, name, **knobs):
-    """A row; of a scheme that says that it does not converge, as Eyre and Milton's at contrast 1e6, a refusal."""
-    try:
-        return once(name, **knobs)
-    except RuntimeError as error:
-        if "did not converge" not in str(error):
-            raise
-        return {"status": "unsupported", "note": str(error)}
 
 
 def _steady(name, *, method, judged=True, **knobs):
@@ -97,8 +85,6 @@ def _contacts(name, knobs):
 
 def warm_up(name, *, method, **knobs):
     """Load and compile what a row needs, at a size that costs next to nothing; keeps nothing on disk."""
-    if "degree" in knobs:
-        knobs["order"] = knobs.pop("degree")
     if name not in IN_TIME:
         methods.warm_up(method, **knobs)
         exact_of(name)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from demheat import referee
 from studies.harness.pick import pick, present
-from studies.speed_error import laws, means
+from studies.speed_error import means
 from studies.speed_error.cases import COMPARED, MARCHED, TIGHT, TO_LIMIT
 from studies.speed_error.scenes import IN_TIME
 
@@ -14,10 +12,6 @@ from studies.speed_error.scenes import IN_TIME
 IN_TIME_LIMITS = {"slab": 0.1, "ball": 0.1, "beam": 0.015}
 # Solves that were run twice, at least, of which nine in ten say something.
 OFTEN = 20
-# Scenes, at least, of which one can be left out.
-SCENES = 6
-LIMITS = {"error": 10.0, "cpu_s": 3.0}
-SAID = {"error": "errors", "cpu_s": "CPU times"}
 
 
 def all_claims(df):
@@ -32,7 +26,6 @@ def all_claims(df):
     again = means.run_twice(df)
     if len(again) >= OFTEN:
         yield "DEM, the same solve twice: factor within which nine costs in ten are", again.quantile(0.9), means.TIE
-    yield from _worth(df)
 
 
 def _kernels(df):
@@ -64,15 +57,3 @@ def _schemes(df):
             scalar, eyre_milton = (rows["cpu_s"].iloc[0] for rows in loose)
             text = f"FFT {voxels}^3: CPU time of Eyre-Milton over that of the scalar scheme"
             yield text, eyre_milton / scalar, ">= 3"
-
-
-def _worth(df):
-    """What the laws are worth on scenes that they were not fitted to."""
-    if laws.usable(df)["scene"].nunique() < SCENES:
-        return
-    ratios = laws.left_out(df)
-    for column, limit in LIMITS.items():
-        found = ratios[column].dropna()
-        text = f"Laws of {SAID[column]}, each scene left out in turn: factor within which"
-        yield f"{text} nine rows in ten are", laws.within(found), limit
-        yield f"{text} half of the rows are", laws.within(found, 0.5), float(np.sqrt(limit))

@@ -65,6 +65,9 @@ class Shape(ABC):
     overhangs = False
     # Whether its surface can be found: distances and normals are those to it.
     traceable = True
+    # How points on its surface are found, by which costs are told beforehand: by a closed "form", by a "search", or by
+    # asking a "function" again and again.
+    finding = "search"
     # What it is called in messages and in scene files: its class in small letters, if it says nothing else.
     kind: ClassVar[str]
     # What of it scene files have, besides material and resistance: fields, each with what its numbers are, a key of

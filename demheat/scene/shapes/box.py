@@ -58,6 +58,7 @@ class Box(Solid):
     rotation: Sequence[float] | Sequence[Sequence[float]] = field(default=IDENTITY, kw_only=True)
     resistance: float = field(default=0.0, kw_only=True)
 
+    finding = "form"
     stored = {"center": "point", "sides": "lengths", "rotation": "rotation"}
 
     def __post_init__(self):

@@ -60,6 +60,7 @@ class Cylinder(Solid):
     length: float | None = field(default=None, kw_only=True)
     resistance: float = field(default=0.0, kw_only=True)
 
+    finding = "form"
     stored = {"center": "point", "radius": "length", "axis": "direction", "length": "length"}
 
     def __post_init__(self):

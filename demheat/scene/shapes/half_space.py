@@ -50,6 +50,7 @@ class HalfSpace(Solid):
     material: Material
     resistance: float = field(default=0.0, kw_only=True)
 
+    finding = "form"
     kind = "half-space"
     stored = {"point": "point", "outward": "direction"}
 

@@ -40,6 +40,7 @@ class Layer(Shape):
     material: Material
     resistance: float = field(default=0.0, kw_only=True)
 
+    finding = "form"
     fills_bounds = True
     flat = True
     stored = {"axis": "axis", "start": "length", "stop": "length"}

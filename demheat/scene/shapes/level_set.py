@@ -77,6 +77,7 @@ class LevelSet(Solid):
     resistance: float = field(default=0.0, kw_only=True)
     periodic: bool = field(default=False, kw_only=True)
 
+    finding = "function"
     kind = "level set"
     convex = False
     # Its own opposite side is not told: twins that would lie beyond it are none.

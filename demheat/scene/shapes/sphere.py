@@ -41,6 +41,7 @@ class Sphere(Shape):
     material: Material
     resistance: float = field(default=0.0, kw_only=True)
 
+    finding = "form"
     fills_ball = True
     stored = {"center": "point", "radius": "length"}
 
