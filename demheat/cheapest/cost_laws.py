@@ -204,4 +204,3 @@ def _decay(m):
 
 def _error_powers(law):
     return np.array([math.log(law.error), law.refinement, law.strength, law.contrast, law.fraction, law.gap])
-

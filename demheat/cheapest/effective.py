@@ -114,7 +114,7 @@ def effective(
 ) -> Effective:
     """The effective conductivity tensor of a body to an accuracy, as cheaply as is known here.
 
-    Laws of error and cost (study `speed_error`) say which method to begin with and how fine; the interval of each
+    Laws of error and cost (study `frontier`) say which method to begin with and how fine; the interval of each
     answer (`Field.error`, study `estimates`) says whether to refine it. Mirror planes cut the body, alike axes share a
     load, loads on one body share its set-up.
 

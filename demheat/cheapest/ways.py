@@ -152,7 +152,9 @@ def _refined(name, loads, accuracy, memory):
             # What is left is paid for each inclusion, whatever the elements.
             break
         first = coarser
-    way = _within(Way(name, {**_fixed(name, accuracy), knob: first}, cost.error, _all(cost, loads, limit), cost.bytes), memory)
+    way = _within(
+        Way(name, {**_fixed(name, accuracy), knob: first}, cost.error, _all(cost, loads, limit), cost.bytes), memory
+    )
     least = predicted(law, part, first).bytes
     return way._replace(refused=f"needs {_gib(least)} to begin with") if least > memory else way
 

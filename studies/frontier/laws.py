@@ -26,6 +26,8 @@ from studies.frontier.ways import WAYS
 
 # The way that each method's law is fitted to; rules of the FFT are told apart by the scene.
 FITTED = {"dem": "dem", "fem": "fem", "fft": "fft-loose", "multipole": "multipole"}
+# Coarser than that nothing begins: what so few elements miss they do not show.
+COARSEST = {"particles": 1000, "voxels": 24}
 # Relative errors below, a thirtieth of the finest target, are those of the linear solvers: of layers with most methods.
 FLOOR = 1e-6
 # The matrix does not notice that coated sphere: first-order errors of the conductivity cancel, as of no other scene.
@@ -73,9 +75,10 @@ def _tried(df, method, way):
             continue
         measures = _law_of(method, row["scene"])[1]
         unit = measures.edge if WAYS[way].knob == "size" else 1.0
+        coarsest = COARSEST.get(WAYS[way].knob, 0.0)
         peaks = {told[0]: told[3] for told in json.loads(row["conductivity"]).values() if isinstance(told, list)}
         for value, _, _, found, *_ in json.loads(row["trail"]):
-            if found and found[0] is not None:
+            if found and found[0] is not None and value >= coarsest:
                 peak = peaks.get(value, math.nan) * 2**20
                 yield Tried(row["scene"], measures, unit * value, found[0] / 100, found[1], peak)
 

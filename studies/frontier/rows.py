@@ -14,7 +14,7 @@ from demheat.runtime.process_state import stopwatch
 from studies.frontier.scenes import scene_of
 from studies.frontier.search import MOST_S, QUANTITIES, TARGETS, Point, foreseen, reached, search
 from studies.frontier.truth import truth_of
-from studies.frontier.ways import WAYS, knobs_at
+from studies.frontier.ways import WAYS, begun, knobs_at
 from studies.harness import methods
 from studies.harness.cost import measured
 from studies.harness.repeated import forget
@@ -28,7 +28,8 @@ DIGITS = 4
 
 def searched(name: str, way: str, seconds: float) -> dict:
     """Row of a search within so many processor seconds."""
-    how, scene, truth = WAYS[way], scene_of(name), truth_of(name)
+    scene, truth = scene_of(name), truth_of(name)
+    how = begun(WAYS[way], scene)
 
     def judged(quantity, target):
         if quantity == "extrapolated" and not how.extrapolates:

@@ -1,4 +1,4 @@
-"""The scenes of the frontier: those of `speed_error`, and as many that no constant was ever found on."""
+"""The scenes of the frontier: steady ones of every kind, and as many that no constant was ever found on."""
 
 from __future__ import annotations
 

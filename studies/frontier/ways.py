@@ -51,6 +51,11 @@ WAYS = {
 }
 
 
+def begun(way: Way, scene) -> Way:
+    """The same with a particle for each body at least, to begin with."""
+    return way._replace(first=max(way.first, len(scene.inclusions))) if way.knob == "particles" else way
+
+
 def value_at(way: Way, number: float) -> float | int:
     """The knob's value at a place on the walk: the first at 0, each next place about STEP times as dear."""
     if way.knob == "particles":

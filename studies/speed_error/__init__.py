@@ -26,6 +26,8 @@ FAILS = {
 
 __all__ = ["CASES", "PAPER", "QUICK", "TIMEOUT", "claims", "in_time", "notes", "packing", "plot", "run", "table",
            "warm_up"]  # fmt: skip
+
+
 def QUICK(case):
     """Coarse rows."""
     if case.get("seed", 0) > 0 or case.get("particles", 0) > 20_000:

@@ -61,19 +61,7 @@ def judged(study, df):
 @cache
 def stored(name):
     study = runner.load(name)
-    if name == "speed_error":
-        # Laws are fitted anew at each judgement, eight CPU-seconds: they have tests of their own.
-        claims = dict(vars(study)) | {"claims": _without_laws}
-        study = SimpleNamespace(**claims)
     return judged(study, dealt.frame(runner.load(name), RESULTS / f"{name}.csv"))
-
-
-def _without_laws(df):
-    from studies.speed_error import verdicts
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(verdicts, "SCENES", np.inf)
-        yield from list(verdicts.all_claims(df))
 
 
 def holding_anyhow(found):

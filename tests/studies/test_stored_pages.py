@@ -11,13 +11,9 @@ from studies.harness import provenance, runner, table
 from studies.harness.claims import judged
 
 STORED = provenance.ROOT / "results"
-# Laws are fitted anew for their claims, ten CPU-seconds: `test_speed_error_laws` asks for those that are shipped.
-SLOW = ("speed_error",)
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in study_names()]
-)
+@pytest.mark.parametrize("name", study_names())
 def test_a_page_says_what_the_code_makes_of_its_rows(name):
     study, path = runner.load(name), STORED / f"{name}.csv"
     rows = table.read_frame(study, path)

@@ -134,7 +134,8 @@ def test_the_fft_is_judged_by_the_rule_that_it_takes(contrast, rule):
     told = {way.method: way for way in recommend(scene, 1e-3).ways}["fft"]
     part = measures(loads_of(scene).parts[0])
     law = {"laminate": "fft"}.get(rule, f"fft-{rule}")
-    needed = cost_laws.needed(law, part, 1e-3 / ways.INTERVAL, sure=False)
+    wider = ways.ABOUT_LIMIT["fft"] if contrast else ways.INTERVAL
+    needed = cost_laws.needed(law, part, 1e-3 / wider, sure=False)
     assert told.error == cost_laws.predicted(law, part, needed).error
     # The rule for pores is the same in few voxels.
     field = fft.solve(scene, voxels=told.knobs["voxels"] if contrast else 8)
@@ -218,7 +219,7 @@ def test_what_a_method_closes_in_on_is_taken_where_it_has_such_a_limit():
     close, plain = (effective(scene, accuracy=5e-2, method="fft") for scene in (CUBE, box))
     assert (close.how, plain.how) == ("larger voxels, extrapolated", "larger voxels")
     right = exact.solve(CUBE).conductivity
-    field = fft.solve(loads_of(CUBE).parts[0], voxels=close.knobs["voxels"])
+    field = fft.solve(loads_of(CUBE).parts[0], **close.knobs)
     assert close.tensor[0, 0] == pytest.approx(field.extrapolated.conductivity, rel=1e-9)
     assert abs(close.tensor[0, 0] - right) < abs(field.conductivity - right)
     # Of the DEM the interval about its own answer is narrower.

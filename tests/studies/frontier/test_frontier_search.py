@@ -8,7 +8,7 @@ import pytest
 
 from studies.frontier import search as search_module
 from studies.frontier.cases import all_cases, foreseen
-from studies.frontier.scenes import HELD_BACK, SCENES, TUNED
+from studies.frontier.scenes import FOR_LAWS, HELD_BACK, SCENES, TUNED
 from studies.frontier.search import Point, reached, search
 from studies.frontier.search import foreseen as foreseen_seconds
 from studies.frontier.ways import NEAR, STEP, WAYS, between, growth, knobs_at, smooth, value_at
@@ -142,7 +142,8 @@ def test_voxels_divide_well():
 def test_scenes_are_enough_and_none_is_named_twice():
     assert len(HELD_BACK) >= 10 and not set(HELD_BACK) & TUNED_NAMES
     cases = list(all_cases())
-    assert {case["scene"] for case in cases} == set(SCENES)
+    assert {case["scene"] for case in cases} == {*SCENES, *FOR_LAWS}
+    assert not set(SCENES) & set(FOR_LAWS)
     # The machine has two processors, and searches use one and a half of them.
     assert foreseen() / 1.5 < 60
 
