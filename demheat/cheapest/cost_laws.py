@@ -180,7 +180,7 @@ def stiff_term(m: Measures) -> float:
 
 
 def size_terms(knob: str, m: Measures, value: float) -> np.ndarray:
-    """Numbers that cost and memory are made of, (7,) float array, see `Law.seconds`; of multipoles waves are the bulk."""
+    """Numbers that cost and memory are made of, (7,) float array, see `Law.seconds`; waves of multipoles are bulk."""
     if knob == DEGREE.knob:
         return np.array([1.0, m.count * ((value + 1) ** 2 - 1), 0.0, m.count, 0.0, 0.0, 0.0])
     h = element(knob, m, value)

@@ -1,7 +1,7 @@
 """Laws of error and cost, fitted to searches; `python -m studies.frontier.laws` ships them anew.
 
-The laws and their terms are those of `demheat.cheapest.cost_laws`. They are fitted to what searches tried on scenes that
-are not held back: the steady ones, and some that are there for the laws alone (`scenes.FOR_LAWS`). Logarithms are
+The laws and their terms are those of `demheat.cheapest.cost_laws`. They are fitted to what searches tried on scenes
+that are not held back: the steady ones, and some that are there for the laws alone (`scenes.FOR_LAWS`). Logarithms are
 fitted by least squares that count large deviations less (an error may cross zero by luck), each scene by as much as any
 other, with a little pull of every exponent of a scene's measure towards none: there are few scenes.
 """
