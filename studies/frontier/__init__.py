@@ -146,6 +146,13 @@ def multipoles(df):
     return means.multipoles(df)
 
 
+def beside_peers(df):
+    """Programs of others on the same bodies, searched for in the same way."""
+    from studies.frontier import means
+
+    return means.beside_peers(df)
+
+
 def advised(df):
     """What `recommend` is worth."""
     from studies.frontier import advice

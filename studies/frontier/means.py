@@ -57,11 +57,12 @@ def longest(df):
     return df.sort_values("seconds", kind="stable").groupby(["scene", "way"], sort=False).tail(1)
 
 
-def reached(df, scene, quantity, target, *, any_shape=True):
-    """All ways that get to a target, the cheapest first."""
+def reached(df, scene, quantity, target, *, any_shape=True, peers=False):
+    """All ways that get to a target, the cheapest first; ours, or those of others."""
     found = []
     for row in longest(df[df["scene"] == scene]).to_dict("records"):
-        if any_shape and WAYS[row["way"]].spheres:
+        how = WAYS[row["way"]]
+        if (any_shape and how.spheres) or how.peer is not peers:
             continue
         for column in COLUMNS[quantity]:
             costs = {each: row.get(f"{column}_{each:g}_s", np.nan) for each in TARGETS if each <= target}
@@ -155,6 +156,19 @@ def multipoles(df):
         said = f", where the next costs {_between(factors)} times as much" if factors else ""
         parts.append(f"to {target:g} % on {len(won)} of {len(every)}{said}")
     return f"Of scenes of spheres on which they get there, they cost least {'; '.join(parts)}."
+
+
+def beside_peers(df):
+    """Where a program of others gets to an accuracy at less cost than any of ours for any shape."""
+    parts = []
+    for scene in scenes_of(df):
+        for target in TARGETS:
+            theirs = reached(df, scene, "conductivity", target, peers=True)
+            ours = reached(df, scene, "conductivity", target)
+            if theirs and not (ours and ours[0].cpu_s <= theirs[0].cpu_s):
+                own = f"{ours[0].title} in {ours[0].cpu_s:.2g}" if ours else "none of ours within its search"
+                parts.append(f"{theirs[0].title} to {target:g} % of {scene} in {theirs[0].cpu_s:.2g} s ({own})")
+    return f"At less cost than ours get there: {'; '.join(parts)}." if parts else "Nowhere at less cost than ours."
 
 
 TITLES = {"dem": "the DEM", "fem": "finite elements", "fft": "the FFT"}

@@ -11,6 +11,7 @@ import warnings
 from demheat import budget, referee
 from demheat.declared import load
 from demheat.runtime.process_state import stopwatch
+from studies.frontier.peer import found
 from studies.frontier.scenes import scene_of
 from studies.frontier.search import MOST_S, QUANTITIES, TARGETS, Point, foreseen, reached, search
 from studies.frontier.truth import truth_of
@@ -63,7 +64,7 @@ def at_point(name: str, way: str) -> dict:
     with budget(MOST_S), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=QUIET)
         try:
-            field = load(how.method).solve(scene, **knobs_at(how, how.point, scene))
+            field = _solved(how, scene, how.point)
             row["point_k"] = field.conductivity
             if how.extrapolates and math.isfinite(limit := _limit(field)):
                 row["point_limit_k"] = limit
@@ -74,8 +75,17 @@ def at_point(name: str, way: str) -> dict:
     return row
 
 
+def _solved(way, scene, value):
+    """A field, or what a program of others found."""
+    if way.peer:
+        return found(way, scene, value)
+    return load(way.method).solve(scene, **knobs_at(way, value, scene))
+
+
 def _point(way, scene, truth, value, wanted):
     """Errors and costs at one value, a packing made on the spot."""
+    if way.peer:
+        return _of_peer(found(way, scene, value), value, truth)
     forget()
     with (
         tempfile.TemporaryDirectory() as folder,
@@ -89,10 +99,19 @@ def _point(way, scene, truth, value, wanted):
     return Point(value, errors, costs, unknowns, walked=True)
 
 
+def _of_peer(answer, value, truth):
+    """The same of a program that counts its own cost."""
+    cost = [tuple(answer.cost[name] for name in ("cpu_s", "wall_s", "peak_mib"))]
+    error = 100 * abs(referee.value_error(answer.conductivity, truth.conductivity))
+    return Point(
+        value, {"conductivity": error}, {"conductivity": cost, "all": list(cost)}, answer.unknowns, walked=True
+    )
+
+
 def _asked(way, scene, truth, value, wanted):
     """A solve, and besides what is wanted of it: errors, and processor and wall seconds, each with the solve's."""
     spent = stopwatch()
-    field = load(way.method).solve(scene, **knobs_at(way, value, scene))
+    field = _solved(way, scene, value)
     costs = {"conductivity": _now(spent)}
     errors = {"conductivity": 100 * abs(referee.conductivity_error(field, truth.conductivity))}
     if way.extrapolates and "extrapolated" in wanted:
@@ -176,4 +195,5 @@ def warm_up(name: str, way: str) -> None:
     """Load and compile what a way needs, at a size that costs next to nothing; work out what is true."""
     how = WAYS[way]
     truth_of(name)
-    methods.warm_up(how.method, **how.knobs)
+    if not how.peer:
+        methods.warm_up(how.method, **how.knobs)

@@ -31,6 +31,7 @@ class Way(NamedTuple):
     extrapolates: bool = False
     own: bool = False  # Whether it is what the method does by itself
     spheres: bool = False  # Whether it knows disjoint spheres only
+    peer: bool = False  # Whether others wrote it
 
 
 WAYS = {
@@ -48,6 +49,7 @@ WAYS = {
     # An image's own voxels, or each of them split into so many along each edge.
     "fft-image": Way("FFT", "fft", "fft", {}, "parts", 1, 1, own=True),
     "multipole": Way("multipoles", "multipole", "multipole", {}, "order", 1, 3, own=True, spheres=True),
+    "ngsolve": Way("NGSolve, degree 3", "fem", "ngsolve", {"order": 3}, "size", 0.5, 0.2, peer=True),
 }
 
 

@@ -1,0 +1,19 @@
+"""A program of others on a scene of the frontier, in a process of its own (`studies.peers`)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from studies.frontier.ways import Way, knobs_at
+
+
+def found(way: Way, scene, value):
+    """What it finds at a value of its knob, and at what cost; a cube conducts alike along all axes here."""
+    from studies.peers import program
+
+    home = program(way.method)
+    if why := home.missing():
+        raise NotImplementedError(why)
+    # Its scripts have the load along x.
+    cold, warm = sorted(scene.wall_temperatures.values())
+    return home.solve(replace(scene, walls={"x-": warm, "x+": cold}), **knobs_at(way, value, scene))
