@@ -36,6 +36,8 @@ NEUTRAL = ("thin shell",)
 PULL = (0.0, 0.3, 0.5, 0.5, 0.5, 0.5)
 START = (0.0, 2.0, 0.0, 0.0, 0.0, 0.0)
 STIFF = 0.3
+# Parts of a cost that are the same by all rules of a method.
+PAINTED = ("searched", "each_searched", "asked")
 # Shares of a cost or a memory below which nothing is told of a part of it.
 LEAST = 1e-6
 SHARE = 0.9
@@ -59,7 +61,15 @@ def fitted(df):
     for method, way in FITTED.items():
         for tried in _tried(df, method, way):
             found.setdefault(_law_of(method, tried.scene)[0], []).append(tried)
-    return {name: _law(name, tried) for name, tried in sorted(found.items())}
+    laws = {name: _law(name, tried) for name, tried in sorted(found.items())}
+    return {name: _with_siblings(law, laws.values()) for name, law in laws.items()}
+
+
+def _with_siblings(law, laws):
+    """Surfaces that no scene of one rule has cost what they do by another: all are painted alike."""
+    family = [each for each in laws if each.method.split("-")[0] == law.method.split("-")[0]]
+    found = {name: max(getattr(each, name) for each in family) for name in PAINTED if getattr(law, name) == 0}
+    return law._replace(**found)
 
 
 @cache
@@ -137,6 +147,7 @@ def _costs(sizes, tried):
     found = least_squares(residuals, np.append(0.0, np.log(begin[there])), loss="soft_l1", x_scale="jac").x
     parts = np.zeros(len(begin))
     parts[there] = np.exp(found[1:])
+    parts[np.max(sizes * parts / seconds[:, None], axis=0) < LEAST] = 0.0
     return parts, found[0], within((sizes @ parts) * np.exp(found[0] * stiff) / seconds)
 
 
