@@ -32,6 +32,7 @@ LEFT_OUT = {
 }
 # Of one sphere in a cube a program of others has what it is given there.
 PEERS = ("third", "third at 0.01", "third at 1000", "half", "half at 100")
+PAPER = (*PEERS, "83 spheres", "polydisperse")
 DEM_LIMIT = ("half", "half at 100", "83 spheres", "1000 spheres", "unequal, f = .5", "infinite")
 ONLY_SPHERES = (
     *("third", "third at 0.01", "third at 1000", "third at infinity", "half", "half at 100", "polydisperse"),
@@ -56,7 +57,7 @@ def _fits(way, how, scene):
     """Whether a way says anything of a scene."""
     if (how.spheres and scene not in ONLY_SPHERES) or (how.knob == "parts" and scene != "image"):
         return False
-    if how.peer and scene not in PEERS:
+    if (how.peer and scene not in PEERS) or (way == "dem-paper" and scene not in PAPER):
         return False
     return way not in LEFT_OUT.get(scene, ()) and (way != "dem-limit" or scene in DEM_LIMIT)
 

@@ -41,6 +41,10 @@ WAYS = {
     "dem": Way("DEM", "dem", "dem", {}, "particles", 250, 2000, own=True),
     # What is extrapolated from the same particles is mostly the same: by itself, and on few scenes.
     "dem-limit": Way("DEM", "dem", "dem", {}, "particles", 4000, 8000, extrapolates=True),
+    # As printed by Haddad et al.: particles in packings, calibrated surfaces.
+    "dem-paper": Way(
+        "DEM, paper", "dem-calibrated", "dem", {"law": "calibrated", "conforming": False}, "particles", 500, 2000
+    ),
     "fem": Way("FEM, degree 2", "fem", "fem", {"order": 2}, "size", 0.35, 0.2, extrapolates=True, own=True),
     "fem-p1": Way("FEM, degree 1", "fem-p1", "fem", {"order": 1}, "size", 0.2, 0.15),
     "fft": Way("FFT", "fft", "fft", {}, "voxels", 8, 24, extrapolates=True, own=True),
