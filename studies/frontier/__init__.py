@@ -22,8 +22,8 @@ PAPER = {}
 # Why claims on the stored rows fail.
 FAILS = {
     "recommend: cost of what it names over the least, largest": (
-        "5000 spheres to 1 %: the FFT on 64 voxels, extrapolated, is right to .95 %, but half of its own interval there "
-        "is 44 %, so `effective`, whose costs are told, would go on to finer ones and takes multipoles"
+        "5000 spheres to 1 %: the FFT on 64 voxels, extrapolated, is right to .95 %, but half of its own interval is "
+        "44 % there, so `effective`, whose costs are told, would go on to finer ones and takes multipoles"
     ),
 }
 TIMEOUT = 900.0
