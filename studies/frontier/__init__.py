@@ -18,6 +18,7 @@ Costs are those of a quiet machine, or none are stored: `python -m studies run f
 from studies.frontier.cases import QUICK_SECONDS, all_cases
 
 CASES = list(all_cases())
+MODULES = {"ngsolve": "studies.peers.programs.ngsolve"}
 PAPER = {}
 # Why claims on the stored rows fail.
 FAILS = {
