@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from studies.frontier.ways import Way, knobs_at
+from studies.harness import runner
 
 
 def found(way: Way, scene, value):
     """What it finds at a value of its knob, and at what cost; a cube conducts alike along all axes here."""
-    from studies.peers import program
-
-    home = program(way.method)
+    home = runner.load("peers").program(way.method)
     if why := home.missing():
         raise NotImplementedError(why)
     # Its scripts have the load along x.
