@@ -8,9 +8,10 @@ of inclusions; what follows are surfaces whose nearest points must be searched f
 surfaces of functions. The memory is a sum of the first of these. The measures of a scene are those of
 `demheat.cheapest.measures`.
 
-The laws say what to expect, not what is certain: nine values in ten that they were fitted to lie within the factors
-`error_within` and `cost_within`, and of scenes unlike those one in ten lies farther off. They are for steady heat, on
-the machine of the study's rows; layers are exact with most methods.
+`laws.csv` is never changed by hand (`python -m studies.frontier.laws`); what `recommend` prints is multiplied by runs
+and loads in `ways`. The laws say what to expect, not what is certain: nine values in ten that they were fitted to lie
+within the factors `error_within` and `cost_within`, and of scenes unlike those one in ten lies farther off. They are
+for steady heat, on the machine of the study's rows; layers are exact with most methods.
 """
 
 from __future__ import annotations

@@ -24,6 +24,8 @@ COARSE = {"amg": np.float64, "amg-single": np.float32}
 # Found on one and on 83 spheres, 1e4 to 1e5 particles, contrasts 0.01 to 1e6: about as many at 2e4 unknowns, half as
 # many or fewer at 1e5.
 AMG_UNKNOWNS = 50_000
+# Relative residual at which iterations stop, of whoever solves a network and is not told another.
+TOLERANCE = 1e-8
 # Iterations, at most.
 MOST_ITERATIONS = 20_000
 # Beyond this contrast rounding may keep residuals above a tolerance below that.
@@ -57,7 +59,7 @@ class Solution(NamedTuple):
     still: np.ndarray | None = None
 
 
-def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iterations=MOST_ITERATIONS):
+def solve_steady(network, scene, *, solver="auto", tolerance=TOLERANCE, max_iterations=MOST_ITERATIONS):
     """Temperatures at which every particle receives as much heat as it gives."""
     check_solver(solver, tolerance)
     scene.require(steady=True, takes=("resistance", "exchange", "image"))

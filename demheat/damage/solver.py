@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from demheat.conduction.steady import check_solver, solve_checked
+from demheat.conduction.steady import TOLERANCE, check_solver, solve_checked
 from demheat.damage.cracks import Disc, Rectangle, check_cracks, cracked, seamed, warn_of_small
 from demheat.damage.inclusions import drawn
 from demheat.damage.links import without_links
@@ -31,7 +31,7 @@ def solve(
     particles: int = 100_000,
     seed: int = 0,
     solver: str = "auto",
-    tolerance: float = 1e-8,
+    tolerance: float = TOLERANCE,
     seconds: float | None = None,
     conforming: bool | None = None,
     interface: str | None = None,

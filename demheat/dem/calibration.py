@@ -5,7 +5,7 @@ Source: Haddad et al. 2021, eqs. 7-9.
 
 import numpy as np
 
-from demheat.conduction.steady import solve_steady
+from demheat.conduction.steady import TOLERANCE, solve_steady
 from demheat.packing.cache import relaxed
 from demheat.packing.gate import check_packing
 from demheat.packing.relax import FEWEST
@@ -15,7 +15,7 @@ from demheat.scene import WALLS, Flux, Material, Scene
 LOADINGS = ("isothermal", "flux")
 
 
-def calibration(network, scene, *, loading="isothermal", solver="auto", tolerance=1e-8) -> float:
+def calibration(network, scene, *, loading="isothermal", solver="auto", tolerance=TOLERANCE) -> float:
     """C_t of a contact network: conductivity over that of the homogeneous lattice with C_t = 1, under a like load.
 
     Source: Haddad et al. 2021, eqs. 7-9.

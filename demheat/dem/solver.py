@@ -14,7 +14,7 @@ from demheat.conduction.integrators.choose import check_linear
 from demheat.conduction.integrators.march import check_request
 from demheat.conduction.perfect import check_perfect, solve_perfect
 from demheat.conduction.sources import check_sources, lost_power, source_power, transits
-from demheat.conduction.steady import MOST_ITERATIONS, check_solver, solve_checked
+from demheat.conduction.steady import MOST_ITERATIONS, TOLERANCE, check_solver, solve_checked
 from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
@@ -41,7 +41,7 @@ def solve(
     particles: int = 100_000,
     seed: int = 0,
     solver: str = "auto",
-    tolerance: float = 1e-8,
+    tolerance: float = TOLERANCE,
     seconds: float | None = None,
     conforming: bool | None = None,
     interface: str | None = None,
@@ -154,7 +154,7 @@ def solve_axes(
     particles: int = 100_000,
     seed: int = 0,
     solver: str = "auto",
-    tolerance: float = 1e-8,
+    tolerance: float = TOLERANCE,
     seconds: float | None = None,
     conforming: bool | None = None,
     interface: str | None = None,

@@ -24,7 +24,7 @@ import numpy as np
 
 from demheat.conduction.multigrid import preconditioner
 from demheat.conduction.products import advance, apply, dot
-from demheat.conduction.steady import AMG_UNKNOWNS, solve_checked
+from demheat.conduction.steady import AMG_UNKNOWNS, TOLERANCE, solve_checked
 from demheat.network import laguerre_kernels
 from demheat.network.base import FEW, Facets
 from demheat.network.interface import connect
@@ -133,7 +133,7 @@ def steady():
     """Compile the balance of heat, the steps that large networks take, and what a field is read off with."""
     network, scene = _network()
     # The linear start is exact: no iteration, and none is compiled.
-    solution = solve_checked(network, scene, solver="cg", tolerance=1e-8)
+    solution = solve_checked(network, scene, solver="cg", tolerance=TOLERANCE)
     field_of(scene, network, solution, stats={})
     x, r = np.ones_like(solution.temperature), np.ones_like(solution.temperature)
     apply(links_of(network), x, x, r)

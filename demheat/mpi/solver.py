@@ -11,7 +11,7 @@ from demheat import dem
 from demheat.beyond import ranks
 from demheat.beyond.ranks import Costs, check_fits, cores, give_back, here
 from demheat.conduction.balance import at_walls, linear_start, system_of
-from demheat.conduction.steady import Solution, check_solver
+from demheat.conduction.steady import TOLERANCE, Solution, check_solver
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import Particles
 from demheat.field import Field
@@ -37,7 +37,7 @@ def solve(
     law: Laguerre | None = None,
     particles: int = 1_000_000,
     seed: int = 0,
-    tolerance: float = 1e-8,
+    tolerance: float = TOLERANCE,
     options: str = "",
     replicas: int | None = None,
     allow_few: bool = False,

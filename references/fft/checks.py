@@ -11,7 +11,10 @@ from demheat.scene.inputs import chosen, finite, whole
 from references.fft.rules import LEAST_LINKED, automatic
 from references.threads import thread_count
 
+# What else knows a rule: CONTRIBUTING, "Where do I change".
 RULES = {"cg": ("auto", "plain", "laminate", "links"), "eyre-milton": ("auto", "plain", "laminate")}
+# By which voxels are painted with what their laminates need.
+LAMINATED = {"plain": False, "laminate": True, "links": True}
 PRECISIONS = {"float64": np.float64, "float32": np.float32}
 # Found at contrasts 0.01 to 100: these leave an error of the conductivity, against the grid's own limit, below 1e-10
 # (cg: quadratic in the tolerance, so 1e-3 suffices for 1e-6) and 2e-7, of the flux field 1e-5 and 1e-6 of its mean.

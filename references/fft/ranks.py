@@ -16,7 +16,7 @@ from demheat.field import Field
 from demheat.scene import Scene
 from demheat.scene.turned import turned as turned_scene
 from references.fft.cg import nodes_of, solved
-from references.fft.checks import Knobs, check_grid, check_load, checked, rule_of
+from references.fft.checks import LAMINATED, Knobs, check_grid, check_load, checked, rule_of
 from references.fft.estimate import estimated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.memory import OWN
@@ -60,7 +60,7 @@ def solve(
     ranks.check_fits("voxels", voxels or grid, needed(scene, grid), comm, power=3)
     costs, slab = ranks.Costs(comm), slab_of(shape, not box.periodic, comm)
     with costs.of("voxels"):
-        held = painted(box, slab, laminate=knobs.rule == "laminate")
+        held = painted(box, slab, laminate=LAMINATED[knobs.rule])
         if box.inclusions and comm.rank == 0:
             warn_of_thin(box, knobs.rule, shape)
     slope, level = linear_part(box)

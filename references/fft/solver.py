@@ -18,7 +18,7 @@ from demheat.scene.perfect import as_good
 from demheat.scene.turned import turned as turned_scene
 from demheat.tensor import axis_loads
 from references.fft import cg, eyre_milton
-from references.fft.checks import PRECISIONS, check_grid, check_load, check_scheme, checked, rule_of
+from references.fft.checks import LAMINATED, PRECISIONS, check_grid, check_load, check_scheme, checked, rule_of
 from references.fft.estimate import estimated, extrapolated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.memory import expected
@@ -165,7 +165,7 @@ def _finite(scenes, voxels, knobs, perfect=None):
     check_memory("voxels", voxels or grid, needed, power=3)
     with announced("FFT", needed):
         # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
-        painted = voxelise(boxes[0], shapes[0], laminate=knobs.rule != "plain")
+        painted = voxelise(boxes[0], shapes[0], laminate=LAMINATED[knobs.rule])
         if scenes[0].inclusions:
             warn_of_thin(boxes[0], knobs.rule, shapes[0])
         if perfect is not None:

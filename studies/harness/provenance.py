@@ -24,7 +24,7 @@ ANYWHERE = ("versions",)
 
 
 def provenance(study):
-    """Columns that say where a row of a study comes from."""
+    """Columns that say where a row of a study comes from; each stands in `store.TAIL`, or replays would compare it."""
     return {
         "commit": commit(study.__file__),
         **here(),

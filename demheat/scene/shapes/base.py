@@ -171,7 +171,7 @@ class Shape(ABC):
         return bool(np.all((high > 0) & (low < size)))
 
     def images(self, size: Sequence[float], *, periodic: bool) -> list[Shape]:
-        """The shape as it meets a box.
+        """The shape as it meets a box; of spheres, all at once, the same in `references.voxels.spheres.images`.
 
         Parameters
         ----------
