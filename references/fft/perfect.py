@@ -39,6 +39,20 @@ def check_perfect(scene: Scene, scheme: str, precision: str) -> None:
         )
 
 
+def check_rule(scene: Scene, perfect, rule: str) -> None:
+    """Raise NotImplementedError for laminates of perfect conductors with round surfaces that do not resist."""
+    if rule != "laminate":
+        return
+    open_ = scene.resistances == 0
+    round_ = np.array([False] + [not shape.flat for shape in scene.inclusions])
+    sides = perfect != perfect[scene.parents()]
+    if np.any(round_ & open_ & sides):
+        raise NotImplementedError(
+            f"rule = {rule!r}: laminates of voxels that a perfect conductor cuts are a tenth off on 32 voxels along an "
+            "edge; must be 'links' or 'plain', or its surface must resist"
+        )
+
+
 def check_spans(scene: Scene, perfect, phase, slope) -> None:
     """Raise if perfect phases of a grid join two temperatures, or are too near to tell."""
     inside, sides, slope = perfect[phase], joined(scene), np.asarray(slope)

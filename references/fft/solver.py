@@ -22,7 +22,7 @@ from references.fft.checks import LAMINATED, PRECISIONS, check_grid, check_load,
 from references.fft.estimate import estimated, extrapolated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.memory import expected
-from references.fft.perfect import check_perfect, check_spans
+from references.fft.perfect import check_perfect, check_rule, check_spans
 from references.fft.problem import SolvedGrid
 from references.fft.rules import warn_of_thin
 from references.fft.units import direction, linear_part, mean_flux, order_of, problem_of, units_of, wall_heat
@@ -157,6 +157,8 @@ def _finite(scenes, voxels, knobs, perfect=None):
     boxes = [turned_scene(scene, order) for scene, order in zip(scenes, orders, strict=True)]
     shapes = [tuple(grid[a] for a in order) for order in orders]
     knobs = rule_of(scenes[0], grid, knobs)
+    if perfect is not None:
+        check_rule(scenes[0], perfect, knobs.rule)
     for box, shape in zip(boxes, shapes, strict=True):
         check_grid(box, knobs.rule, shape)
     itemsize = np.dtype(PRECISIONS[knobs.precision]).itemsize

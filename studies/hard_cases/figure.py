@@ -1,4 +1,4 @@
-"""Outcomes by method and by family as bars, and every error beside what is allowed."""
+"""Outcomes by method and by family as bars, and every error beside what is right."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from studies.harness.figures import GREEN, GREY, ORANGE, RED
 
 COLOURS = {"verified": GREEN, "refused": GREY, "warned": ORANGE, "wrong": RED}
 WORDS = {
-    "verified": "within what is allowed",
+    "verified": "right",
     "refused": "refused, with its reason",
     "warned": "off, and says so",
     "wrong": "silently wrong",
 }
-# Below this an error is drawn as this, in units of what is allowed.
+# Below this an error is drawn as this, in units of what is right.
 FLOOR = 1e-4
 # And above this as this: of a conductivity that should be nearly none an error has no size.
 CEILING = 1e6
@@ -31,7 +31,7 @@ def draw(df):
     _bars(axes[1], each, "family", "hardness")
     _errors(axes[2], each)
     right, wrong = (int((each["outcome"] == name).sum()) for name in ("verified", "wrong"))
-    words = f"{len(each)} hard cases: {right} within what is allowed (mostly 5 to 20 %), {wrong} silently wrong"
+    words = f"{len(each)} hard cases: {right} right to 2 % or within their own interval, {wrong} silently wrong"
     figure.suptitle(words, x=0.01, ha="left")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
@@ -49,7 +49,7 @@ def _bars(axes, each, column, words):
 
 
 def _errors(axes, each):
-    """Sorted errors of each method, over what is allowed: which part of its answers is how good."""
+    """Sorted errors of each method, over what is right: which part of its answers is how good."""
     answers = each[each["error"].notna()]
     names = list(dict.fromkeys(answers["name"]))[::-1]
     for place, name in enumerate(names):
@@ -59,6 +59,6 @@ def _errors(axes, each):
         axes.scatter(size, spread, s=9, c=[COLOURS[outcome] for outcome in rows["outcome"]], linewidths=0)
     axes.axvline(1.0, color="black", linewidth=1)
     axes.set(xscale="log", yticks=range(len(names)), title="each answer")
-    axes.set_xlabel("|error| over what is allowed, cut at 1e-4 and 1e6")
+    axes.set_xlabel("|error| over what is right, cut at 1e-4 and 1e6")
     axes.set_yticklabels(names)
     axes.grid(False, axis="y")

@@ -6,12 +6,16 @@ import json
 from collections import Counter
 
 from demheat.referee import value_error
+from demheat.runtime.process_state import stopwatch
 from studies.common.answers import answer
 from studies.hard_cases.changes import relations
-from studies.hard_cases.scenes import rng_of, scene_of
+from studies.hard_cases.scenes import rng_of, scene_of, spheres_of
 from studies.hard_cases.verdicts import OUTCOMES, Truth, judged, refused, truth
-from studies.hard_cases.ways import allowed, ways
+from studies.hard_cases.ways import ways
 from studies.harness import methods
+
+# Who is true is not judged.
+WITNESSES = {"multipoles": "multipole"}
 
 
 def steady(family: str, seed: int, changed: bool = False) -> dict:
@@ -19,10 +23,11 @@ def steady(family: str, seed: int, changed: bool = False) -> dict:
     scene, _, refusal = answer(lambda: scene_of(family, seed))
     if refusal is not None:
         return row_of([refused("scene", refusal)], "none")
-    known = truth(scene)
-    taken = ways(family, scene, rng_of(family, seed, 1))
-    verdicts = [asked(way, scene, known) for way in taken]
-    row = row_of(verdicts, known.source, known)
+    known = truth(spheres_of(family, seed))
+    taken = [way for way in ways(family, scene, rng_of(family, seed, 1)) if WITNESSES.get(known.source) != way.name]
+    verdicts, seconds = zip(*(asked(way, scene, known) for way in taken), strict=True)
+    late = [spent for each, spent in zip(verdicts, seconds, strict=True) if each.outcome == "refused"]
+    row = row_of(verdicts, known.source, known) | {"refusal_s": max(late, default=0.0)}
     if not changed:
         return row
     right = [way for way, each in zip(taken, verdicts, strict=True) if each.outcome == "verified" and not each.note]
@@ -30,12 +35,13 @@ def steady(family: str, seed: int, changed: bool = False) -> dict:
 
 
 def asked(way, scene, known: Truth):
-    """Verdict on one method."""
-    solve = methods.load(way.method.module).solve
+    """Verdict on one method, and processor seconds until it answered."""
+    solve, spent = methods.load(way.method.module).solve, stopwatch()
     field, said, refusal = answer(lambda: solve(scene, **way.knobs))
+    seconds = spent()["cpu_s"]
     if refusal is not None:
-        return refused(way.name, refusal)
-    return judged(way.name, field, known, allowed(way, scene), said)
+        return refused(way.name, refusal), seconds
+    return judged(way.name, field, known, said), seconds
 
 
 def row_of(verdicts, source: str, known: Truth | None = None) -> dict:

@@ -11,6 +11,7 @@ import numpy as np
 
 from demheat.packing.dispersion import dispersion
 from demheat.scene import Layer, Material, Scene, Sphere
+from studies.hard_cases.surfaces import KINDS, as_surfaces
 
 LOW, HIGH = 20.0, 50.0
 # Contrasts between which uniform draws of the exponent take turns with the extremes.
@@ -26,6 +27,12 @@ MOST = {"sc": 0.52, "bcc": 0.6, "fcc": 0.6}
 
 def scene_of(family: str, seed: int) -> Scene:
     """The scene of a family by a seed, the same at every call."""
+    scene = spheres_of(family, seed)
+    return as_surfaces(KINDS[seed % len(KINDS)], scene) if family == "surface" else scene
+
+
+def spheres_of(family: str, seed: int) -> Scene:
+    """The same, surfaces as the spheres that they draw."""
     return FAMILIES[family](rng_of(family, seed), seed)
 
 
@@ -193,6 +200,31 @@ def _coarse(rng, seed):
     return _array(rng, "sc", 10 ** rng.uniform(-2, 2), rng.uniform(0.05, 0.5), periodic=bool(seed % 2))
 
 
+def _infinite(rng, seed):
+    """Perfect conductors at a tenth to a thousandth of a radius from each other, pores or others among them."""
+    matrix, gap = _matrix(rng), 10 ** rng.uniform(-3, -1)
+    radii = rng.uniform(0.12, 0.25, rng.integers(2, 7))
+    balls = _placed(rng, radii, np.ones(3), gap * float(radii.min()))
+    kinds = (np.inf, (0.0, 10.0)[seed % 2])
+    inclusions = [Sphere(c, r, _times(matrix, kinds[k % 3 == 2])) for k, (c, r) in enumerate(balls)]
+    return _scene(rng, (1.0, 1.0, 1.0), matrix, inclusions)
+
+
+def _films(rng, seed):
+    """Surfaces that resist like a thousandth to a thousand radii of the matrix, around anything from bad to perfect."""
+    matrix = _matrix(rng)
+    balls = _placed(rng, rng.uniform(0.12, 0.3, rng.integers(1, 6)), np.ones(3), 0.02)
+    contrast = np.inf if seed % 3 == 2 else float(10 ** rng.uniform(-3, 6))
+    film = 10 ** rng.uniform(-3, 3) / matrix.conductivity
+    inclusions = [Sphere(c, r, _times(matrix, contrast), resistance=film * r) for c, r in balls]
+    return _scene(rng, (1.0, 1.0, 1.0), matrix, inclusions)
+
+
+def _surfaces(rng, seed):
+    """Arrays of any contrast, drawn by surfaces of other kinds."""
+    return _array(rng, ("sc", "bcc")[seed // len(KINDS) % 2], _contrast(rng, 3.0), rng.uniform(0.05, 0.45))
+
+
 def _units(rng, seed):
     """Scenes of other families in lengths and conductivities of 1e-9 to 1e9."""
     family = ("contrast", "ratio", "thin", "islands")[seed % 4]
@@ -226,4 +258,7 @@ FAMILIES = {
     "islands": _islands,
     "coarse": _coarse,
     "units": _units,
+    "infinite": _infinite,
+    "film": _films,
+    "surface": _surfaces,
 }

@@ -1,4 +1,4 @@
-"""The methods that take part, with knobs drawn by seed, and what each may be off before it must say so."""
+"""The methods that take part, with knobs drawn by seed."""
 
 from __future__ import annotations
 
@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.method import DEGREE, Method
-from demheat.scene import Layer, Scene, Sphere
-from demheat.scene.volumes import coats
+from demheat.method import Method
+from demheat.scene import Scene
 from studies.harness import methods
 
 # Beside the declared ones: the rule that the FFT method chooses by itself, held to what its best rule declares.
@@ -22,10 +21,6 @@ COARSE = (1, 2, 3, 4, 5, 7, 11, 13, 17, 23, 31, 41, 50)
 ITERATIONS = {"fft": 1000, "fft-em": 400}
 # Estimated elements of a mesh beyond which finite elements are not asked: thin layers take a square of them each.
 ELEMENTS = 30_000
-# What is exact but for the solver: a tolerance of 1e-5 to 1e-9, and rounding at contrasts of 1e6.
-SOLVED = 1e-3
-# Nobody need be better where a body is a few elements thick; nobody may be worse without a word.
-LEAST, MOST = 0.05, 0.20
 # The sphere on which methods declare their errors is so many edges of the cube wide.
 DECLARED = 2 / 3
 
@@ -87,47 +82,3 @@ def _elements(scene, size, order):
         return check_cost(wanted_sizes(scene, size), scene.size, order)
     except (ValueError, NotImplementedError):
         return 0
-
-
-def allowed(way: Way, scene: Scene) -> float:
-    """Largest relative error of the conductivity that is no fault where the method says nothing.
-
-    What the method declares, at the resolution at which it does, grows with the size of an element over the thinnest
-    feature: with the first order, which is less than declared orders grow. It stays between `LEAST` and `MOST`.
-    Features are bodies, and gaps of an element or more. Narrower gaps earn nothing: what they spoil must be said.
-    """
-    method = way.method
-    if method.resolution == DEGREE or (scene.only(Layer) and "laminate" not in method.exceptions):
-        return SOLVED
-    at_declared = DECLARED / method.resolution.size(method.coarse)
-    grown = method.errors.conductivity * at_declared * way.element / thinnest(scene, way.element)
-    return float(np.clip(grown, LEAST, MOST))
-
-
-def thinnest(scene: Scene, least_gap: float = np.inf) -> float:
-    """Least thickness of a feature, m: box, spheres, layers and between them, coats, gaps not narrow."""
-    spheres = [each for each in scene.inclusions if isinstance(each, Sphere)]
-    found = [min(scene.size), *coats(scene), *(2 * each.radius for each in spheres)]
-    for axis, side in enumerate(scene.size):
-        ends = {x for each in scene.inclusions if isinstance(each, Layer) and each.axis == axis for x in _ends(each)}
-        found += np.diff(sorted({0.0, side} | ends)).tolist()
-    found += [gap for gap in _gaps(scene, spheres) if gap >= least_gap]
-    return float(min(x for x in found if x > 0))
-
-
-def _gaps(scene, spheres):
-    """Between the surfaces of spheres, their images and walls; less than nothing where they are nested or cut."""
-    size = np.array(scene.size)
-    centers, radii = np.array([each.center for each in spheres]), np.array([each.radius for each in spheres])
-    for number, (center, radius) in enumerate(zip(centers, radii, strict=True)):
-        apart = centers[number + 1 :] - center
-        if scene.periodic:
-            apart -= size * np.round(apart / size)
-            yield size.min() - 2 * radius
-        else:
-            yield from (*(center - radius), *(size - center - radius))
-        yield from np.linalg.norm(apart, axis=1) - radii[number + 1 :] - radius
-
-
-def _ends(layer):
-    return layer.start, layer.stop

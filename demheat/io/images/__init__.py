@@ -7,7 +7,7 @@ suffix      what is read
 .tif .tiff  a stack of pages of one channel: columns are x, rows y, pages z; mapped if neither packed nor in pieces
 .mhd .mha   MetaImage: a header as text, with the raw bytes in a file of their own or behind it, x fastest; mapped
 .nrrd .nhdr as pynrrd reads it, x fastest
-.zarr       a folder with one (nx, ny, nz) array, read a layer of chunks at a time
+.zarr       a folder with one (nx, ny, nz) array, read a layer of chunks at a time; or an OME-Zarr image, by its axes
 =========== ====================================================================================================
 
 MetaImages and NRRDs, and TIFFs as ImageJ and OME write them, may tell the edges of a voxel. On request a part is cut

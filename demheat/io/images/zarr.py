@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.io.images.ome import as_body, finest
 from demheat.io.images.packed import INFLATION, beyond, check_expansion
 from demheat.io.images.source import most_of, told_in_one_line
 from demheat.runtime.limits import check_free
@@ -60,7 +61,15 @@ class Chunks:
 
 
 def read(path):
-    """An array in chunks."""
+    """An array in chunks, or the finest of an image in several sizes, and the voxel that this tells."""
+    with told_in_one_line(path, "zarr image"):
+        group = finest(path)
+    if group is None:
+        return _array(path), None
+    return as_body(path, _array(group.path), group.axes), group.voxel
+
+
+def _array(path):
     layout = layout_of(path)
     check_chunks(path, layout)
     try:
@@ -72,7 +81,7 @@ def read(path):
             f"{path}: zarr {zarr.__version__} is installed; must be {LEAST} or later: pip install -U zarr"
         )
     with told_in_one_line(path, "zarr array"):
-        return Chunks(path, zarr.open_array(str(path), mode="r", zarr_format=layout.version), layout), None
+        return Chunks(path, zarr.open_array(str(path), mode="r", zarr_format=layout.version), layout)
 
 
 def layout_of(path: Path) -> Layout:

@@ -32,6 +32,25 @@ def test_a_cubic_array(resistance, expected, load):
     assert field.error.lower < MATRIX * expected < field.error.upper
 
 
+@pytest.mark.parametrize(
+    ("shape", "matrix"),
+    [
+        (Sphere(MIDDLE, 0.4, PERFECT), MATRIX),
+        (Sphere(MIDDLE, 0.4, Material(5.0)), math.inf),
+        (Box(MIDDLE, (0.3, 0.4, 0.5), PERFECT), MATRIX),
+    ],
+)
+def test_laminates_are_refused(shape, matrix):
+    """They were 9 % off on 32 voxels and said nothing."""
+    with pytest.raises((NotImplementedError, ValueError), match="rule = 'laminate': .*must be 'links' or 'plain'"):
+        fft.solve(body(shape, matrix=matrix, **CELL), voxels=8, rule="laminate")
+
+
+def test_laminates_of_layers_and_of_what_resists_are_right():
+    for shape in (Layer(0, 0.3, 0.7, PERFECT), Sphere(MIDDLE, 0.3, PERFECT, resistance=0.1)):
+        assert fft.solve(body(shape, **CELL), voxels=8, rule="laminate").stats["rule"] == "laminate"
+
+
 BODIES = {
     "across faces": lambda k: body(Sphere((0.1, 0.9, 0.5), 0.4, k), **CELL),
     "half at a wall": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k), **Y),
