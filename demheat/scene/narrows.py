@@ -12,25 +12,37 @@ from demheat.scene.shapes import Layer, Sphere
 
 # Contrast to what is around, either way, from which on a gap matters.
 STRONG = 10.0
+# From foot to foot on two surfaces: between round ones a few rounds are near enough to tell.
+FEET, ON = 8, 1e-6
 
 
 def narrows(scene, reach: float, strong: float = STRONG) -> np.ndarray:
-    """Which spheres and layers are less than a length from their like, or from a wall, where that matters.
+    """Which bodies are less than a length from their like, or from a wall, where that matters.
 
     It does between two that conduct so many times better than what is around both, or both worse; between a good one
-    and a held wall, between a bad one and an insulated one, which mirrors it. Other shapes are none.
+    and a held wall, between a bad one and an insulated one, which mirrors it. Of shapes that are no spheres and no
+    layers those count that have an end, and whose limits are their own: level sets do not.
     """
     found, parents = np.zeros(len(scene.inclusions), bool), scene.parents()[1:]
     k, around = scene.mean_conductivities[1:], scene.mean_conductivities[parents]
     for alike, good in (((k >= strong * around) & (k > 0), True), ((strong * k <= around) & (around > 0), False)):
         for parent in np.unique(parents[alike]):
             ids = np.flatnonzero(alike & (parents == parent))
-            for kind, near in ((Sphere, _near_spheres), (Layer, _near_layers)):
-                own = np.array([i for i in ids if isinstance(scene.inclusions[i], kind)], int)
+            kinds = {i: _kind(scene.inclusions[i]) for i in ids}
+            for kind, near in NEAR.items():
+                own = np.array([i for i in ids if kinds[i] == kind], int)
                 if len(own):
                     shapes = [scene.inclusions[i] for i in own]
                     found[own[near(scene, shapes, reach, _walls(scene, held=good))]] = True
     return found
+
+
+def _kind(shape):
+    if isinstance(shape, Sphere):
+        return "sphere"
+    if isinstance(shape, Layer):
+        return "layer"
+    return "other" if shape.bounded and shape.finding != "function" else ""
 
 
 def _walls(scene, held):
@@ -78,3 +90,37 @@ def _near_layers(scene, layers, reach, walls):
     near = np.zeros(len(layers), bool)
     near[order] = close
     return near
+
+
+def _near_others(scene, shapes, reach, walls):
+    low, high = (np.array(ends) for ends in zip(*(shape.bounds() for shape in shapes), strict=True))
+    near = np.zeros(len(shapes), bool)
+    for axis, side in walls:
+        gap = scene.size[axis] - high[:, axis] if side == "+" else low[:, axis]
+        near |= (gap >= 0) & (gap < reach)
+    if scene.periodic:
+        near |= np.any((scene.size - (high - low) >= 0) & (scene.size - (high - low) < reach), axis=1)
+    for one, other in zip(*np.triu_indices(len(shapes), 1), strict=True):
+        apart = np.abs((low[one] + high[one] - low[other] - high[other]) / 2)
+        if scene.periodic:
+            apart = np.minimum(apart % scene.size, -apart % scene.size)
+        clear = apart - (high[one] - low[one] + high[other] - low[other]) / 2
+        # What touches, as boxes along an edge, leaves none.
+        if clear.max() < reach and ON * reach < _gap(scene, shapes[one], shapes[other]) < reach:
+            near[[one, other]] = True
+    return near
+
+
+def _gap(scene, one, other):
+    """Distance between two surfaces, from foot to foot on either, from between them on."""
+    x, period = np.array(one.center, float)[None], scene.period
+    way = np.array(other.center) - one.center
+    x = x + (way - (period * np.round(way / period) if period is not None else 0.0)) / 2
+    before = x
+    for _ in range(FEET):
+        for shape in (one, other):
+            before, x = x, x - shape.distance(x, period=period)[:, None] * shape.normal(x, period=period)
+    return float(np.linalg.norm(x - before))
+
+
+NEAR = {"sphere": _near_spheres, "layer": _near_layers, "other": _near_others}

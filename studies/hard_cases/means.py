@@ -32,11 +32,16 @@ def title(name: str) -> str:
     return method.title if method else base
 
 
+def is_main(name: str) -> bool:
+    """Whether a method is none that is declared to stand beside others."""
+    method = methods.all_methods().get(name)
+    return method is None or method.role != "beside"
+
+
 def share(each, main: float, beside: float):
     """Title, verified share of the answers that are judged, and the least that is asked, of each method."""
     answers = each[each["outcome"].isin(JUDGED)]
     base = answers["method"].str.split(",").str[0]
     for name in dict.fromkeys(base):
-        method = methods.all_methods().get(name)
         right = (answers[base == name]["outcome"] == "verified").mean()
-        yield title(name), float(right), beside if method is not None and method.role == "beside" else main
+        yield title(name), float(right), main if is_main(name) else beside

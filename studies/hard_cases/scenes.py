@@ -222,7 +222,9 @@ def _films(rng, seed):
 
 def _surfaces(rng, seed):
     """Arrays of any contrast, drawn by surfaces of other kinds."""
-    return _array(rng, ("sc", "bcc")[seed // len(KINDS) % 2], _contrast(rng, 3.0), rng.uniform(0.05, 0.45))
+    # Limits of two level sets must not meet.
+    kind, most = (("sc", 0.45), ("bcc", 0.1))[seed // len(KINDS) % 2]
+    return _array(rng, kind, _contrast(rng, 3.0), rng.uniform(0.03, most))
 
 
 def _units(rng, seed):
