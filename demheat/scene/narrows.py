@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from demheat.scene.shapes import Layer, Sphere
-
 # Contrast to what is around, either way, from which on a gap matters.
 STRONG = 10.0
 # From foot to foot on two surfaces: between round ones a few rounds are near enough to tell.
@@ -38,10 +36,8 @@ def narrows(scene, reach: float, strong: float = STRONG) -> np.ndarray:
 
 
 def _kind(shape):
-    if isinstance(shape, Sphere):
-        return "sphere"
-    if isinstance(shape, Layer):
-        return "layer"
+    if shape.kind in ("sphere", "layer"):
+        return shape.kind
     return "other" if shape.bounded and shape.finding != "function" else ""
 
 
@@ -97,9 +93,11 @@ def _near_others(scene, shapes, reach, walls):
     near = np.zeros(len(shapes), bool)
     for axis, side in walls:
         gap = scene.size[axis] - high[:, axis] if side == "+" else low[:, axis]
-        near |= (gap >= 0) & (gap < reach)
+        # What lies on a wall, or goes on in the next cell, leaves none.
+        near |= (gap > ON * reach) & (gap < reach)
     if scene.periodic:
-        near |= np.any((scene.size - (high - low) >= 0) & (scene.size - (high - low) < reach), axis=1)
+        gaps = scene.size - (high - low)
+        near |= np.any((gaps > ON * reach) & (gaps < reach), axis=1)
     for one, other in zip(*np.triu_indices(len(shapes), 1), strict=True):
         apart = np.abs((low[one] + high[one] - low[other] - high[other]) / 2)
         if scene.periodic:

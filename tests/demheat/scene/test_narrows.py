@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from demheat import Flux, Layer, Material, Scene, Sphere
+from demheat import Box, Ellipsoid, Flux, Layer, Material, Scene, Sphere
 from demheat.scene.narrows import narrows
 
 METAL, GOOD, BAD, LIKE = (Material(k) for k in (1.0, 10.0, 0.1, 9.0))
@@ -98,3 +98,29 @@ def test_by_all_pairs():
 def _apart(one, other):
     offset = np.subtract(one.center, other.center)
     return offset - np.round(offset)
+
+
+def others(kind, *, gap, periodic=True):
+    """Two bodies of good conductors, so far from each other, from their images or from the walls at the load's ends."""
+    shapes = {
+        "images": [Ellipsoid((0.5, 0.5, 0.5), (0.5 - gap / 2, 0.2, 0.3), GOOD)],
+        "pair": [
+            Ellipsoid((0.5 - 0.2 - gap / 2, 0.5, 0.5), (0.2, 0.1, 0.1), GOOD),
+            Ellipsoid((0.5 + 0.2 + gap / 2, 0.5, 0.5), (0.2, 0.15, 0.1), GOOD),
+        ],
+        "boxes": [Box((0.25, 0.5, 0.5), (0.3, 0.4, 0.4), GOOD), Box((0.55 + gap, 0.5, 0.5), (0.3, 0.2, 0.2), GOOD)],
+        "wall": [Ellipsoid((0.3 + gap, 0.5, 0.5), (0.3, 0.2, 0.2), GOOD)],
+    }[kind]
+    load = {"gradient": (1, 0, 0)} if periodic and kind != "wall" else {"walls": {"x-": 0.0, "x+": 1.0}}
+    return Scene((1.0, 1.0, 1.0), Material(1.0), shapes, **load)
+
+
+@pytest.mark.parametrize("kind", ["images", "pair", "boxes", "wall"])
+def test_gaps_beside_other_shapes_are_seen(kind):
+    scene = others(kind, gap=0.02)
+    assert narrows(scene, 0.03).all() and not narrows(scene, 0.01).any()
+
+
+def test_boxes_that_touch_leave_no_gap():
+    halves = [Box((0.25, y, 0.5), (0.5, 0.5, 1.0), GOOD) for y in (0.25, 0.75)]
+    assert not narrows(Scene((1.0, 1.0, 1.0), Material(1.0), halves, gradient=(1, 0, 0)), 0.1).any()
