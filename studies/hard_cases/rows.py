@@ -14,6 +14,8 @@ from studies.hard_cases.verdicts import OUTCOMES, Truth, judged, refused, truth
 from studies.hard_cases.ways import ways
 from studies.harness import methods
 
+# Processor seconds within which a refusal must come.
+SOON = 10.0
 # Who is true is not judged.
 WITNESSES = {"multipoles": "multipole"}
 
@@ -26,8 +28,8 @@ def steady(family: str, seed: int, changed: bool = False) -> dict:
     known = truth(spheres_of(family, seed))
     taken = [way for way in ways(family, scene, rng_of(family, seed, 1)) if WITNESSES.get(known.source) != way.name]
     verdicts, seconds = zip(*(asked(way, scene, known) for way in taken), strict=True)
-    late = [spent for each, spent in zip(verdicts, seconds, strict=True) if each.outcome == "refused"]
-    row = row_of(verdicts, known.source, known) | {"refusal_s": max(late, default=0.0)}
+    late = sum(each.outcome == "refused" and spent > SOON for each, spent in zip(verdicts, seconds, strict=True))
+    row = row_of(verdicts, known.source, known) | {"late": late}
     if not changed:
         return row
     right = [way for way, each in zip(taken, verdicts, strict=True) if each.outcome == "verified" and not each.note]

@@ -7,7 +7,7 @@ import pytest
 from fem_scenes import COARSE, ball, scene
 from numpy.testing import assert_allclose
 
-from demheat.scene import Flux, Layer, Material, Scene, Sphere
+from demheat.scene import Flux, Layer, LevelSet, Material, Scene, Sphere
 from references import exact, fem
 from references.fem import components, good
 
@@ -135,3 +135,20 @@ def test_linear_elements_in_gaps_are_told(contrast, size, order, told):
     assert ["gaps beside inclusions [0] have an element or so" in str(each.message) for each in caught] == [True] * told
     off = found / exact.solve(scene).conductivity - 1
     assert 0.05 < off < 0.1 if told else abs(off) < 0.05
+
+
+def test_a_level_set_that_loses_volume_is_told_of():
+    """With edges as long as its radius elements lacked a quarter of it, and the interval just missed."""
+
+    def inside(points):
+        return np.sum((points - 0.5) ** 2, axis=1) - 0.2**2
+
+    body = LevelSet(inside, ((0.25,) * 3, (0.75,) * 3), Material(0.2))
+    scene = Scene((1.0, 1.0, 1.0), Material(1.0), [body], gradient=(1.0, 0.0, 0.0))
+    with pytest.warns(
+        UserWarning, match="inclusion 0: its elements have another volume .* by [1-9][0-9]%: the conduct"
+    ):
+        fem.solve(scene, size=0.2)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        fem.solve(scene, size=0.05)
