@@ -87,8 +87,8 @@ def solve(
     Warns
     -----
     UserWarning
-        If linear elements are few across a gap between good conductors, or elements have another volume than a body of a
-        function by a tenth.
+        If linear elements are few across a gap between good conductors, or elements have a tenth less or more volume
+        than a body of a function.
 
     Examples
     --------
