@@ -17,6 +17,7 @@ from studies.harness.figures import look
 from studies.harness.pick import pick, present
 
 BODIES = ("one", "83", "chain")
+TITLES = {"one": "one sphere", "83": "83 spheres", "chain": "three that touch"}
 CONTRASTS, RESISTANCES = (1e2, 1e6, 1e9, 1e12, math.inf), (0.0, 0.05)
 RADIUS, LINKS = 1 / 3, 3
 # What each method is given; a resistance is for laminates of its voxels.
@@ -153,8 +154,8 @@ def plot(df):
                 label = f"{method.upper()}{', resistance' if resistance else ''}"
                 style = look(method, label=label, linestyle=line)
                 axes.plot(rows["contrast"].map(places), rows["iterations"], **style)
-        axes.set(xscale="log", yscale="log", title=body, xlabel="contrast")
+        axes.set(xscale="log", yscale="log", title=TITLES[body], xlabel="contrast")
         axes.set_xticks(list(places.values()), [*(f"1e{math.log10(c):.0f}" for c in finite), "infinity"])
     grid[0].set_ylabel("iterations")
-    grid[0].legend()
+    figure.legend(*grid[0].get_legend_handles_labels(), loc="outside lower center", ncols=6)
     return figure

@@ -161,10 +161,13 @@ def _spreads(ax, df):
         ("unequal spheres instead of equal ones", GREEN): [change(df, f, "unequal") for f in fractions],
         ("largest difference of two methods, converged", RED): [_between(df, f) for f in fractions],
     }
-    width = 0.8 / len(groups)
+    # Points, as on an axis of logarithms bars begin nowhere; a little aside of each other.
+    aside = 0.5 / len(groups)
     for k, ((label, colour), values) in enumerate(groups.items()):
         heights = np.array([np.nan if v is None else abs(v) for v in values])
-        ax.bar(np.arange(len(fractions)) + (k + 0.5) * width - 0.4, heights, width, color=colour, label=label)
+        places = np.arange(len(fractions)) + (k + 0.5) * aside - 0.25
+        if np.isfinite(heights).any():
+            ax.plot(places, heights, color=colour, marker="osD^v"[k], linestyle="", label=label)
     ax.set(xlabel="volume fraction", ylabel="% of k", yscale="log", title="What changes the result")
     ax.set_axisbelow(True)
     ax.set_xticks(range(len(fractions)), [f"{f:g}" for f in fractions])

@@ -1,4 +1,4 @@
-"""Seven hundred hard cases: each answer is right, refused with its reason, or comes with a warning.
+"""Nine hundred hard cases: each answer is right, refused with its reason, or comes with a warning.
 
 Scenes are drawn by seed, a family for each hardness: contrasts of 0 and 1e-6 to 1e6 and infinity; gaps of a tenth to a
 millionth of a diameter, touching spheres; spheres cut by walls; radii as 1 to 10; volume fractions up to .6; layers and
