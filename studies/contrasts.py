@@ -26,6 +26,11 @@ WITHOUT = {"fem": ("83", "chain")}
 # What was asked for before any was counted: at a trillion at most so many times those at a hundred.
 MOST, FAR = 2.0, 1e12
 BLIND = ("dem", "fem")
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "and at infinity": "iterations stop at 1e-8 of the heat, of either",
+    "chain without": "what a contact passes has terms beside the logarithm",
+}
 PAPER = {}
 CASES = [
     {"body": body, "resistance": resistance, "contrast": contrast, "method": method}

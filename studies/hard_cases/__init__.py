@@ -43,7 +43,10 @@ TOLERANCES = {"verdicts": Tolerance(1e-6, 1e-7)}
 COMPARED_AS = {"verdicts": lambda cell: json.dumps([each[:-1] for each in json.loads(cell or "[]")])}
 PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
-REASONS = {"too wide to judge": "a share of a few scenes of one family, which others drawn would have doubled"}
+REASONS = {
+    "too wide to judge": "a share of a few scenes of one family, which others drawn would have doubled",
+    "beside the main methods": "what intervals of 95 % leave, whoever has them",
+}
 TIMEOUT = 900.0
 CASES = [
     {"family": family, "seed": seed, "method": "all"}

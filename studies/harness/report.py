@@ -96,10 +96,8 @@ def readme(found, first, figures):
             f"{len(found)} studies, {sound.total(found)}. Costs of these count in no claim.",
             "The same as one page, with all tables and figures: [index.html](index.html).\n",
             "Written by `python -m studies report`; how to read and repeat it: [studies](../docs/studies.md).\n",
-            "- [Ten claims first](#ten-claims-first)",
-            "- [Figures of the papers](#figures-of-the-papers)",
-            "- [All studies](#all-studies)",
-            "- [Claims that fail](#claims-that-fail)\n",
+            "Ten claims first; then [figures of the papers](#figures-of-the-papers), [all studies](#all-studies) and "
+            "[claims that fail](#claims-that-fail).\n",
             "## Ten claims first\n",
             "|  | claim | value | limit | study |\n|---|---|--:|---|---|",
             *claims,
