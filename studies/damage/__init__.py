@@ -26,6 +26,7 @@ CRACK_LIMITS = (6.0, 3.0, 1.5)
 REASONS = {
     "spheres that have come off, DEM, 100000": "by second order, 4.6 times, from the limit with 10 000 particles",
     "first links gone": "two gone links beside each other count as one or three: a part of twice their share, .01",
+    "above the bound 1 - q": "a bound of the mean over all draws: two or three of them scatter about theirs",
     "effective medium theory": "draws of the small lattice scatter by 3 %, as two of them in quick rows",
 }
 # Why claims on the stored rows fail.

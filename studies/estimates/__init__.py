@@ -43,10 +43,6 @@ FAILS = {
         "since tiles and twins took nine tenths of the error, by setting its two powers against each other, changes "
         "between coarser runs, which tell of it, fell less: an interval that knew would be a bet on their signs"
     ),
-    "DEM, plain packing: share": (
-        "two of 24: changes are taken between conductivities that are corrected for what packings hold by chance, and "
-        "raised by what was found before they were"
-    ),
     "DEM as in the paper: share": (
         "two of 24: the interval is that of conforming cells beside it and the way to them, which is most of its error"
     ),
