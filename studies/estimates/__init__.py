@@ -43,9 +43,6 @@ FAILS = {
         "since tiles and twins took nine tenths of the error, by setting its two powers against each other, changes "
         "between coarser runs, which tell of it, fell less: an interval that knew would be a bet on their signs"
     ),
-    "DEM as in the paper: share": (
-        "two of 24: the interval is that of conforming cells beside it and the way to them, which is most of its error"
-    ),
     "FEM, P1: share": (
         "four of its five misses are coated and neutral spheres, where errors of coat and core cancel in the "
         "conductivity and changes from mesh to mesh are chance; the fifth, an array, is off by 7.4 % on its mesh"
