@@ -201,5 +201,5 @@ def test_studies_tables_and_figures_pick_it_up(home, tmp_path):
     assert "| toy of cells, 8 cells along an edge" in said and "toy of cells: share of rows" in said
     legend, studies = said.splitlines()[-2:]
     assert legend.startswith("legend") and "'toy of cells'" in legend
-    for name in ("fig14_single_inclusion", "fig17_etc", "fig18_fields", "many_inclusions", "speed_error", "stability"):
+    for name in ("fig14_single_inclusion", "fig17_etc", "fig18_fields", "many_inclusions", "stability"):
         assert name in studies

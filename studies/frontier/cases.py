@@ -23,7 +23,7 @@ RULES = ("fem-p1", "fft-laminate", "fft-links", "fft-em")
 LEFT_OUT = {
     "laminate": RULES,
     "image": ("fft", "fft-loose", *RULES),
-    "infinite": ("fft-loose", *RULES),
+    "infinite": RULES,
     "gyroid": ("fft-em",),
     # Elements around a thousand spheres take more memory than there is.
     "1000 spheres": ("fem", "fem-p1", "fft-em"),

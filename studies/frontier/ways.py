@@ -55,6 +55,7 @@ WAYS = {
     "fft-em": Way("FFT, Eyre-Milton", "fft-em", "fft", {"scheme": "eyre-milton", "rule": "laminate"}, "voxels", 8, 24),
     # An image's own voxels, or each of them split into so many along each edge.
     "fft-image": Way("FFT", "fft", "fft", {}, "parts", 1, 1, own=True),
+    "fft-image-loose": Way("FFT, tolerance 1e-3", "fft", "fft", {"tolerance": 1e-3}, "parts", 1, 1),
     "multipole": Way("multipoles", "multipole", "multipole", {}, "order", 1, 3, own=True, spheres=True),
     "ngsolve": Way("NGSolve, degree 3", "fem", "ngsolve", {"order": 3}, "size", 0.5, 0.2, peer=True),
 }
