@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from studies.frontier.scenes import HELD_BACK, SCENES, TUNED
-from studies.frontier.search import TARGETS
+from studies.frontier.search import QUANTITIES, TARGETS, Point, reaching
 from studies.frontier.ways import NEAR, WAYS
 
 # Of a row that is there, by what is compared; an extrapolated conductivity is a conductivity.
@@ -65,21 +65,38 @@ def reached(df, scene, quantity, target, *, any_shape=True, peers=False):
         if (any_shape and how.spheres) or how.peer is not peers:
             continue
         for column in COLUMNS[quantity]:
-            costs = {each: row.get(f"{column}_{each:g}_s", np.nan) for each in TARGETS if each <= target}
-            costs = {each: cost for each, cost in costs.items() if cost == cost}
-            if costs:
-                # A coarser value need not be the cheaper one: what gets farther gets there, too.
-                cheapest = min(costs, key=lambda each: costs[each])
-                told = _told(row, column, cheapest)
-                extrapolated = column == "extrapolated"
-                found.append(Reached(row["way"], extrapolated, costs[cheapest], told[5] or 0.0, told[0], told[4]))
+            if (there := _cheapest(row, column, target)) is not None:
+                found.append(there)
     return sorted(found, key=lambda each: each.cpu_s)
 
 
-def _told(row, column, target):
+def _cheapest(row, column, target):
+    """Of all values that get to a target the cheapest, or None: a coarser one need not cost less."""
+    # What gets farther gets there, too; targets that cannot be judged have no column.
+    if all(np.isnan(row.get(f"{column}_{each:g}_s", np.nan)) for each in TARGETS if each <= target):
+        return None
+    points = list(_tried(row))
+    there = (points[place] for place in reaching(points, column, target))
+    best = min(there, key=lambda point: point.cost(column))
+    # What was run once scatters as what was run again does at most.
+    spreads = {told[0]: told[5] or 0.0 for told in _decided(row, column)}
+    spread = spreads.get(best.value, max(spreads.values(), default=0.0))
+    return Reached(row["way"], column == "extrapolated", best.cost(column), spread, best.value, best.errors[column])
+
+
+def _tried(row):
+    """All that a search tried, the costs of each medians of its runs."""
+    for value, unknowns, walked, *parts in json.loads(row["trail"]):
+        known = {name: part for name, part in zip(QUANTITIES, parts, strict=True) if part and part[0] is not None}
+        errors = {name: part[0] for name, part in known.items()}
+        costs = {name: [(part[1],)] for name, part in known.items()}
+        yield Point(value, errors, costs, unknowns, bool(walked))
+
+
+def _decided(row, column):
+    """What is told of the values that were run again."""
     told = row.get(column)
-    told = json.loads(told).get(f"{target:g}") if isinstance(told, str) else None
-    return told if isinstance(told, list) else [np.nan] * 7
+    return [each for each in json.loads(told).values() if isinstance(each, list)] if isinstance(told, str) else []
 
 
 def best(df, scene, quantity, target, *, any_shape=True):

@@ -140,12 +140,16 @@ def _sought(trail, judged):
 
 def reached(points, quantity, target):
     """Place of the first point that is within a target with all up to the second finer step of the walk, or None."""
+    return next(reaching(points, quantity, target), None)
+
+
+def reaching(points, quantity, target):
+    """Places of all such points: a finer one may cost less."""
     within = [point.error_of(quantity) <= target for point in points]
     for place in range(len(points)):
         finer = [number for number in range(place + 1, len(points)) if points[number].walked][:FINER]
         if len(finer) == FINER and all(within[place : finer[-1] + 1]):
-            return place
-    return None
+            yield place
 
 
 def foreseen(points, quantity, target):

@@ -1,4 +1,4 @@
-"""Only here: a tie taken for a win, a way that gets nowhere for the cheapest, advice judged by another way's cost."""
+"""Only here: ties taken for wins, finer values that cost less passed over, advice judged by another way's cost."""
 
 import json
 
@@ -8,11 +8,13 @@ import pytest
 from studies.frontier import advice, means
 
 
-def row(scene, way, seconds, spread=0.01):
-    """One search that gets to .1 % of the conductivity; None: it does not."""
+def row(scene, way, seconds, spread=0.01, finer=2.0):
+    """One search that gets to .1 % of the conductivity; None: it does not. The next values cost so many times more."""
     told = {"0.1": [1.0, seconds, seconds, 1.0, 0.05, spread, 3] if seconds else "not within"}
     cost = seconds or float("nan")
-    return {"scene": scene, "way": way, "seconds": 22.0, "conductivity_0.1_s": cost, "conductivity": json.dumps(told)}
+    trail = [[n, 1, 1, [0.05, cost * finer ** (n > 1), 1], None, None, None] for n in (1.0, 2.0, 3.0, 4.0)]
+    found = {"conductivity_0.1_s": cost, "conductivity": json.dumps(told), "trail": json.dumps(trail)}
+    return {"scene": scene, "way": way, "seconds": 22.0, **found}
 
 
 ROWS = pd.DataFrame(
@@ -39,6 +41,12 @@ def test_who_wins_in_numbers():
         "none; a tie on 1; on 1 none gets there."
     )
     assert means.judged(ROWS, "conductivity", 0.01) == []
+
+
+def test_a_finer_value_that_costs_less_is_the_cheapest():
+    """The first that gets there need not be: of the four values the second costs half, and two finer ones are there."""
+    (found,) = means.reached(pd.DataFrame([row("third", "fft", 1.0, finer=0.5)]), "third", "conductivity", 0.1)
+    assert (found.value, found.cpu_s, found.spread) == (2.0, 0.5, 0.01)
 
 
 def test_multipoles_are_counted_where_they_get_there():
