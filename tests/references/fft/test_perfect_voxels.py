@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat import Box, Cylinder, Layer, Material, Scene, Sphere
+from demheat import Box, Cylinder, Ellipsoid, Layer, Material, Scene, Sphere
 from demheat.scene.perfect import INFINITE
 from references import fft
 from references.exact import lattice
 
 MATRIX, MIDDLE, PERFECT = 2.0, (0.5, 0.5, 0.5), Material(math.inf)
 X, Y, CELL = {"walls": {"x-": 20.0, "x+": 30.0}}, {"walls": {"y-": 20.0, "y+": 30.0}}, {"gradient": (10.0, 0.0, 0.0)}
+# A thousandth of the cell: a sixtieth of a voxel.
+THIN = 1e-3
 POINTS = np.random.default_rng(0).random((200, 3))
 pytestmark = pytest.mark.filterwarnings("ignore:gaps beside inclusions")
 
@@ -79,11 +81,31 @@ def test_the_limit_of_good_conductors(name):
         body(Cylinder(MIDDLE, 0.2, (0, 1, 0), PERFECT), **Y),
         body(*(Sphere((x, 0.5, 0.5), 0.25, PERFECT) for x in (0.25, 0.75)), **X),
         body(Sphere(MIDDLE, 0.3, Material(1.0)), matrix=math.inf, **X),
+        body(Box(MIDDLE, (1.0, 0.6, 0.6), PERFECT), **CELL),
+        body(Box(MIDDLE, (THIN, 0.6, 0.6), Material(1.0)), matrix=math.inf, **CELL),
     ],
-    ids=["layer along", "fibre in a cell", "fibre between walls", "chain", "matrix"],
+    ids=["layer along", "fibre in a cell", "fibre between walls", "chain", "matrix", "box", "beside a plate"],
 )
+@pytest.mark.filterwarnings("ignore:.*thinner than a voxel:UserWarning", "ignore:.*smaller than a voxel:UserWarning")
 def test_what_spans_is_infinite(scene):
     with pytest.raises(ValueError, match=INFINITE):
+        fft.solve(scene, voxels=16)
+
+
+@pytest.mark.parametrize(
+    ("scene", "named"),
+    [
+        (body(Sphere(MIDDLE, 0.5 - THIN, PERFECT), **CELL), "inclusions.0."),
+        (body(Ellipsoid(MIDDLE, (0.5 - THIN, 0.3, 0.3), PERFECT), **CELL), "inclusions.0."),
+        (body(Box(MIDDLE, (1.0 - THIN, 0.6, 0.6), PERFECT), **CELL), "inclusions.0."),
+        (body(Layer(0, 0.5, 0.5 + THIN, Material(1.0)), matrix=math.inf, **CELL), "matrix"),
+        (body(Layer(0, 0.5, 0.5 + THIN, Material(1.0)), matrix=math.inf, **X), "matrix"),
+    ],
+    ids=["sphere", "ellipsoid", "box", "matrix in a cell", "matrix between walls"],
+)
+def test_gaps_that_voxels_do_not_see_are_not_called_infinite(scene, named):
+    """Each conducts so and so much: they were said to be infinite, as a body and its image are one phase."""
+    with pytest.raises(NotImplementedError, match=f"voxels do not see what parts perfect conductors, Scene.{named} "):
         fft.solve(scene, voxels=16)
 
 
