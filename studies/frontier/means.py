@@ -71,17 +71,20 @@ def reached(df, scene, quantity, target, *, any_shape=True, peers=False):
 
 
 def _cheapest(row, column, target):
-    """Of all values that get to a target the cheapest, or None: a coarser one need not cost less."""
+    """Of all values that get to a target the cheapest, or None: a coarser one need not be that."""
     # What gets farther gets there, too; targets that cannot be judged have no column.
     if all(np.isnan(row.get(f"{column}_{each:g}_s", np.nan)) for each in TARGETS if each <= target):
         return None
     points = list(_tried(row))
-    there = (points[place] for place in reaching(points, column, target))
-    best = min(there, key=lambda point: point.cost(column))
-    # What was run once scatters as what was run again does at most.
+    there = [points[place] for place in reaching(points, column, target)]
     spreads = {told[0]: told[5] or 0.0 for told in _decided(row, column)}
-    spread = spreads.get(best.value, max(spreads.values(), default=0.0))
-    return Reached(row["way"], column == "extrapolated", best.cost(column), spread, best.value, best.errors[column])
+    again = min((each for each in there if each.value in spreads), key=lambda point: point.cost(column))
+    once = min(there, key=lambda point: point.cost(column))
+    # What was run once, of no scatter of its own, must cost less by more than values of a knob are tried apart.
+    best = once if again.cost(column) > NEAR * once.cost(column) else again
+    return Reached(
+        row["way"], column == "extrapolated", best.cost(column), spreads[again.value], best.value, best.errors[column]
+    )
 
 
 def _tried(row):
