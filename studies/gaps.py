@@ -209,8 +209,17 @@ def plot(df):
         axes.set(xscale="log", yscale="log", xlabel="gap / radius", title=f"{kind}, contrast {contrast:g}")
         axes.invert_xaxis()
     panels[0].set_ylabel("|error of the conductivity|, %")
-    holds = rows.groupby("name")["holds"].mean()
-    share = ", ".join(f"{LOOK[name][0]} {100 * holds[name]:.0f} %" for name in ASKED if name in holds)
-    figure.suptitle(f"Answers right to {RIGHT:g} %, or inside of their interval: {share}")
+    figure.suptitle(f"Answers right to {RIGHT:g} %, or inside of their interval\n{_held(rows)}", fontsize=11)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
+
+
+def _held(rows):
+    """Of each method how many answers hold, and what it refused."""
+    parts = []
+    for name in filter(set(rows["name"]).__contains__, ASKED):
+        mine = pick(rows, name=name)
+        answers = int((mine["status"] == "ok").sum())
+        refused = f" ({len(mine) - answers} refused)" if answers < len(mine) else ""
+        parts.append(f"{LOOK[name][0]}: {int(mine['holds'].sum())} of {answers}{refused}")
+    return "\n".join("; ".join(parts[k : k + 2]) for k in range(0, len(parts), 2))
