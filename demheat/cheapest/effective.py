@@ -43,7 +43,7 @@ class Effective:
     saved : tuple of str
         What symmetry saved.
     passed : tuple of str
-        Methods that were tried before, and why they did not do.
+        Methods that were tried before, and why they did not do, or were left for one that should cost less.
     cut : str
         Where the time was over before the intervals were as narrow as they were asked for; else empty.
 
@@ -173,10 +173,12 @@ def effective(
 def _found(loads, accuracy, allowed, memory):
     """Answer, way, ways that did not do, where time was over; of all ways the one that should cost least goes on."""
     left = [way for way in ways(loads, accuracy, memory) if way.method in allowed]
-    passed, best = [], (math.inf, None, None)
+    passed, best, begun = [], (math.inf, None, None), None
     while left:
         way = min(left, key=lambda each: each.rank)
         left.remove(way)
+        if begun in left:
+            passed.append(_left(begun, best[0], way))
         if not way.refused:
             try:
                 look(way.method)
@@ -185,7 +187,7 @@ def _found(loads, accuracy, allowed, memory):
                 best = min(best, (missing, found, way), key=lambda each: each[0])
                 if missing <= 1:
                     return found, way, tuple(passed), ""
-                way = finer(way, loads, missing, memory)
+                way = begun = finer(way, loads, missing, memory)
             except TimeoutError as error:
                 return _so_far(best, accuracy, f"{way.method}: {one_line(error)}", passed)
             except (NotImplementedError, RuntimeError, ValueError, MemoryError, ImportError) as error:
@@ -204,6 +206,14 @@ def _found(loads, accuracy, allowed, memory):
     if found is not None:
         passed.append(f"nearest is {way.method}, accuracy {missing * accuracy:.2g}")
     raise RuntimeError(f"effective: no method gets to accuracy = {accuracy:g} here. " + "; ".join(passed))
+
+
+def _left(begun, missing, other):
+    """Why a way that was begun is not gone on with: another should cost less."""
+    return (
+        f"{begun.method}: half of the narrowest interval so far is {missing:.2g} times what is allowed; "
+        f"{knobs_of(begun)} should cost {begun.cpu_s:.2g} CPU-s, {other.method} {other.cpu_s:.2g}"
+    )
 
 
 def _so_far(best, accuracy, why, passed):

@@ -97,7 +97,11 @@ def test_a_way_that_turns_out_dear_gives_way(monkeypatch):
     first = ways.Way("fft", {"voxels": 8}, cpu_s=0.01, bytes=1e6)
     begin_with(monkeypatch, first, ways.Way("fem", {"size": CUBE.size[0] / 10}, cpu_s=0.05, bytes=1e6))
     assert ways.finer(first, loads_of(CUBE), 10.0, 1e12).cpu_s > 0.05
-    assert effective(CUBE, accuracy=2e-4).method == "fem"
+    found = effective(CUBE, accuracy=2e-4)
+    assert found.method == "fem"
+    # What was begun is told, and what would have gone on.
+    (told,) = found.passed
+    assert told.startswith("fft: half of the narrowest interval") and "fem" in told
 
 
 def test_what_nobody_reaches_is_refused_with_reasons():
