@@ -13,7 +13,7 @@ from demheat.declared import load
 from demheat.runtime.process_state import stopwatch
 from studies.frontier.peer import found
 from studies.frontier.scenes import scene_of
-from studies.frontier.search import MOST_S, QUANTITIES, TARGETS, Point, foreseen, reached, search
+from studies.frontier.search import MOST_S, QUANTITIES, TARGETS, Point, cheapest, foreseen, search
 from studies.frontier.truth import truth_of
 from studies.frontier.ways import WAYS, begun, knobs_at
 from studies.harness import methods
@@ -48,7 +48,7 @@ def searched(name: str, way: str, seconds: float) -> dict:
     row = {"true_k": truth.conductivity, "true_off": truth.off, "true_by": truth.source}
     for quantity in QUANTITIES:
         for target in TARGETS:
-            place = reached(trail.points, quantity, target) if judged(quantity, target) else None
+            place = cheapest(trail.points, quantity, target) if judged(quantity, target) else None
             cost = math.nan if place is None else trail.points[place].cost(quantity)
             row[f"{quantity}_{target:g}_s"] = _digits(cost)
         row[quantity] = json.dumps(_found(trail.points, quantity, judged), separators=(",", ":"))
@@ -159,7 +159,7 @@ def _found(points, quantity, judged):
     for target in TARGETS:
         if not judged(quantity, target):
             continue
-        place = reached(points, quantity, target)
+        place = cheapest(points, quantity, target)
         if place is not None:
             point = points[place]
             runs = point.costs[quantity]

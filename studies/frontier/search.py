@@ -177,12 +177,18 @@ def _finite(point, quantity):
     return math.isfinite(point.error_of(quantity))
 
 
-def deciding(points, judged):
-    """Places of points that reach a target first, with the quantities that they do so of."""
+def cheapest(points, quantity, target):
+    """Place of the point that reaches a target at least cost, or None."""
+    places = list(reaching(points, quantity, target))
+    return min(places, key=lambda place: points[place].cost(quantity), default=None)
+
+
+def deciding(points, judged, among=reached):
+    """Places of points that reach a target, the first ones or the cheapest, with the quantities that they do so of."""
     found = {}
     for quantity in QUANTITIES:
         for target in TARGETS:
-            place = reached(points, quantity, target) if judged(quantity, target) else None
+            place = among(points, quantity, target) if judged(quantity, target) else None
             if place is not None:
                 found.setdefault(place, []).append(quantity)
     return found
@@ -209,14 +215,26 @@ def _halve(way, run, trail, budget, judged):
 
 
 def _repeat(run, trail, budget, judged):
-    """Run what decides again and again, one after the other."""
-    found = deciding(trail.points, judged)
-    for _ in range(RUNS - 1):
-        for place in sorted(found):
-            point, quantities = trail.points[place], tuple(dict.fromkeys(found[place]))
-            if trail.spent + point.cost("all") > budget:
-                continue
-            again = run(point.value, quantities)
-            trail.spent += sum(each[0] for each in again.costs["all"])
-            for name, costs in again.costs.items():
-                point.costs[name] += costs
+    """Run what decides again and again, one after the other: a cost by luck is found out, and another decides then."""
+    for _ in range(RUNS * (RUNS - 1)):
+        found = deciding(trail.points, judged, among=cheapest)
+        few = [place for place in sorted(found) if _fewest(trail.points[place], found[place]) < RUNS]
+        again = [place for place in few if trail.spent + trail.points[place].cost("all") <= budget]
+        if not again:
+            return
+        for place in again:
+            _once_more(run, trail, trail.points[place], tuple(dict.fromkeys(found[place])), budget)
+
+
+def _once_more(run, trail, point, quantities, budget):
+    if trail.spent + point.cost("all") > budget:
+        return
+    more = run(point.value, quantities)
+    trail.spent += sum(each[0] for each in more.costs["all"])
+    for name, costs in more.costs.items():
+        point.costs[name] += costs
+
+
+def _fewest(point, quantities):
+    """Runs of the quantity that was asked for least often."""
+    return min(len(point.costs[each]) for each in quantities)

@@ -11,7 +11,7 @@ import pytest
 from studies.frontier import search as search_module
 from studies.frontier.cases import all_cases, foreseen
 from studies.frontier.scenes import FOR_LAWS, HELD_BACK, SCENES, TUNED
-from studies.frontier.search import Point, reached, search
+from studies.frontier.search import Point, cheapest, reached, search
 from studies.frontier.search import foreseen as foreseen_seconds
 from studies.frontier.ways import NEAR, STEP, WAYS, between, growth, knobs_at, smooth, value_at
 
@@ -51,7 +51,7 @@ def test_the_cheapest_value_is_found_to_a_fifth_of_its_cost():
 def test_values_that_decide_are_run_three_times_in_turns():
     machine = Machine()
     trail = search(DEM, machine, budget=1e3, judged=only_conductivity)
-    place = reached(trail.points, "conductivity", 0.3)
+    place = cheapest(trail.points, "conductivity", 0.3)
     point = trail.points[place]
     assert len(point.costs["conductivity"]) == 3 and point.spread("conductivity") == pytest.approx(0.02, abs=0.011)
     again = [value for value, wanted in machine.asked if wanted == ("conductivity",)]
@@ -59,6 +59,14 @@ def test_values_that_decide_are_run_three_times_in_turns():
     assert again[:half] == again[half:] == sorted(again[:half])
     # The others once.
     assert min(len(each.costs["conductivity"]) for each in trail.points) == 1
+
+
+def test_what_costs_least_is_run_again_though_a_coarser_value_reaches_the_target():
+    """Dear values are by their cost, not by their place: here all coarse ones cost ten times as much."""
+    machine = Machine(cost=lambda n: 10.0 if n < 6000 else 1e-4 * n)
+    trail = search(DEM, machine, budget=1e4, judged=lambda quantity, target: quantity == "conductivity" and target >= 1)
+    first, best = (which(trail.points, "conductivity", 1.0) for which in (reached, cheapest))
+    assert first < best and [len(trail.points[place].costs["conductivity"]) for place in (first, best)] == [1, 3]
 
 
 def test_a_change_of_sign_wins_nothing():
