@@ -62,9 +62,9 @@ def test_values_that_decide_are_run_three_times_in_turns():
 
 
 def test_what_costs_least_is_run_again_though_a_coarser_value_reaches_the_target():
-    """Dear values are by their cost, not by their place: here all coarse ones cost ten times as much."""
+    """Here all coarse ones cost more than the fine ones that other targets are sought with."""
     machine = Machine(cost=lambda n: 10.0 if n < 6000 else 1e-4 * n)
-    trail = search(DEM, machine, budget=1e4, judged=lambda quantity, target: quantity == "conductivity" and target >= 1)
+    trail = search(DEM, machine, budget=1e4, judged=only_conductivity)
     first, best = (which(trail.points, "conductivity", 1.0) for which in (reached, cheapest))
     assert first < best and [len(trail.points[place].costs["conductivity"]) for place in (first, best)] == [1, 3]
 
