@@ -173,12 +173,12 @@ def effective(
 def _found(loads, accuracy, allowed, memory):
     """Answer, way, ways that did not do, where time was over; of all ways the one that should cost least goes on."""
     left = [way for way in ways(loads, accuracy, memory) if way.method in allowed]
-    passed, best, begun = [], (math.inf, None, None), None
+    passed, best, begun, missing = [], (math.inf, None, None), None, math.inf
     while left:
         way = min(left, key=lambda each: each.rank)
         left.remove(way)
         if begun in left:
-            passed.append(_left(begun, best[0], way))
+            passed.append(_left(begun, missing, way))
         if not way.refused:
             try:
                 look(way.method)
@@ -211,7 +211,7 @@ def _found(loads, accuracy, allowed, memory):
 def _left(begun, missing, other):
     """Why a way that was begun is not gone on with: another should cost less."""
     return (
-        f"{begun.method}: half of the narrowest interval so far is {missing:.2g} times what is allowed; "
+        f"{begun.method}: half of its interval is {missing:.2g} times what is allowed; "
         f"{knobs_of(begun)} should cost {begun.cpu_s:.2g} CPU-s, {other.method} {other.cpu_s:.2g}"
     )
 

@@ -35,7 +35,7 @@ class Measures(NamedTuple):
     asked: float
     count: int  # Number of inclusions
     count_searched: int
-    gap: float  # Least gap between two balls around bodies, or twice that to a wall, over the smaller one's radius
+    gap: float  # Least gap between two enclosing balls, or twice that to a wall, over the smaller one's radius
 
 
 def measures(scene: Scene) -> Measures:
@@ -123,7 +123,7 @@ def _gap(scene):
             apart = np.minimum(apart % size, -apart % size)
         gap = math.dist(apart, (0, 0, 0)) - radii[i] - radii[j]
         if gap <= 0 and {outer[i].kind, outer[j].kind} != {"sphere"}:
-            # Balls around bodies that are none meet where these need not.
+            # Enclosing balls of other bodies overlap where these may be apart.
             continue
         nearest = min(nearest, gap / min(radii[i], radii[j]))
     return float(np.clip(nearest, 1e-6, WIDEST))

@@ -179,8 +179,7 @@ def _finite(point, quantity):
 
 def cheapest(points, quantity, target):
     """Place of the point that reaches a target at least cost, or None."""
-    places = list(reaching(points, quantity, target))
-    return min(places, key=lambda place: points[place].cost(quantity), default=None)
+    return min(reaching(points, quantity, target), key=lambda place: points[place].cost(quantity), default=None)
 
 
 def deciding(points, judged, among=reached):
@@ -216,23 +215,22 @@ def _halve(way, run, trail, budget, judged):
 
 def _repeat(run, trail, budget, judged):
     """Run what decides again and again, one after the other: a cost by luck is found out, and another decides then."""
-    for _ in range(RUNS * (RUNS - 1)):
+    while True:
         found = deciding(trail.points, judged, among=cheapest)
         few = [place for place in sorted(found) if _fewest(trail.points[place], found[place]) < RUNS]
-        again = [place for place in few if trail.spent + trail.points[place].cost("all") <= budget]
-        if not again:
+        if not any([_once_more(run, trail, trail.points[place], found[place], budget) for place in few]):
             return
-        for place in again:
-            _once_more(run, trail, trail.points[place], tuple(dict.fromkeys(found[place])), budget)
 
 
 def _once_more(run, trail, point, quantities, budget):
+    """Run a value again; whether there was budget for it."""
     if trail.spent + point.cost("all") > budget:
-        return
-    more = run(point.value, quantities)
-    trail.spent += sum(each[0] for each in more.costs["all"])
-    for name, costs in more.costs.items():
+        return False
+    again = run(point.value, tuple(dict.fromkeys(quantities)))
+    trail.spent += sum(each[0] for each in again.costs["all"])
+    for name, costs in again.costs.items():
         point.costs[name] += costs
+    return True
 
 
 def _fewest(point, quantities):

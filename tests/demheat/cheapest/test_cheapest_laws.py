@@ -28,6 +28,14 @@ def test_measures_of_a_sphere_in_a_cube():
     assert found.count == 1
 
 
+def test_only_spheres_touch_where_enclosing_balls_do():
+    load = {"walls": {"x-": 1.0, "x+": 0.0}}
+    thin = [Ellipsoid((0.5, 0.5, z), (0.4, 0.05, 0.05), Material(10.0)) for z in (0.3, 0.7)]
+    assert measures(Scene((1.0,) * 3, Material(1.0), thin, **load)).gap > 0.1
+    balls = [Sphere((0.5, 0.5, z), 0.2, Material(10.0)) for z in (0.3, 0.7)]
+    assert measures(Scene((1.0,) * 3, Material(1.0), balls, **load)).gap < 1e-5
+
+
 def test_measures_do_not_hang_on_units_or_on_the_load():
     one = measures(SCENE)
     other = measures(gallery.sphere_in_cube(10.0, edge=2.0, periodic=True, matrix=Material(7.0)))
