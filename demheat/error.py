@@ -12,6 +12,8 @@ import math
 import threading
 import warnings
 from collections.abc import Callable, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import partial
 from typing import NamedTuple
 
@@ -40,6 +42,8 @@ RAISED = 1.15
 PLACED = 1.25
 # Coarser runs.
 LEVELS = 2
+# Whether temperatures are compared, too, which costs more than the rest where solves are small.
+_WARMTH = ContextVar("warmth", default=True)
 # Filters of warnings belong to the process: one thread at a time changes and restores them.
 _QUIET = threading.Lock()
 
@@ -111,6 +115,16 @@ class Fine(NamedTuple):
 NOTHING = Fine()
 
 
+@contextmanager
+def of_conductivity_alone():
+    """Within, estimates leave temperatures out: NaN."""
+    token = _WARMTH.set(False)
+    try:
+        yield
+    finally:
+        _WARMTH.reset(token)
+
+
 def known(field, relative, how, *, temperature=math.nan) -> Estimate:
     """The estimate of a method that knows its relative error."""
     k, relative = conductivity_of(field), relative + ROUNDING
@@ -122,8 +136,10 @@ def beside(field, other, how) -> Estimate:
     """The estimate of a method by another of the same scene: as far as the other is, and what that may be off."""
     error, runs = other.error, (conductivity_of(field), conductivity_of(other))
     half = max(abs(runs[0] - error.lower), abs(error.upper - runs[0]))
-    points = _points(field.scene)
-    apart = _spread(_level_free(field, points), _level_free(other, points))
+    apart = math.nan
+    if _WARMTH.get():
+        points = _points(field.scene)
+        apart = _spread(_level_free(field, points), _level_free(other, points))
     flux = _size(field.mean_flux - other.mean_flux) + error.flux
     return Estimate(how, max(runs[0] - half, 0.0), runs[0] + half, flux, apart + error.temperature, runs)
 
@@ -153,7 +169,7 @@ def by_refinement(
     runs = [[field], *_coarser_runs(coarser)]
     fields = [first for first, *_ in runs]
     other = quietly(also, fields[1]) if also else None
-    points, residual = _points(field.scene), residual + ROUNDING
+    residual += ROUNDING
     rule = _beside_edges(rule, edge_order(field.scene))
 
     def lacks(read, apart, safety):
@@ -172,9 +188,11 @@ def by_refinement(
         off = shown + fine.rough
         half += off * abs(k - float(field.scene.mean_conductivities[0]))
     flux = lacks(lambda each: each.mean_flux, largest, rule.safety) + residual * _size(field.mean_flux)
-    warmth = partial(_level_free, points=points)
-    kelvin = lacks(warmth, _spread, rule.temperature_safety) + residual * _span(field, warmth(field))
-    if rule.coats and np.any(field.scene.parents()):
+    coated, kelvin = rule.coats and np.any(field.scene.parents()), math.nan
+    if coated or _WARMTH.get():
+        warmth = partial(_level_free, points=_points(field.scene))
+        kelvin = lacks(warmth, _spread, rule.temperature_safety) + residual * _span(field, warmth(field))
+    if coated:
         half = max(half, rule.coats * abs(k) * kelvin / _drop(field, warmth(field)))
     found = Estimate(rule.how, max(k - half, 0.0), k + half, flux, kelvin, tuple(map(conductivity_of, fields)))
     return _with_unseen(found, field, k, fine)

@@ -9,6 +9,7 @@ import numpy as np
 
 from demheat.cheapest.loads import Loads
 from demheat.cheapest.ways import EXTRAPOLATED, HOMES, KNOBS, Way
+from demheat.error import of_conductivity_alone
 from demheat.field import Field
 from demheat.tensor import conductivity_tensor
 from references import bracket
@@ -34,7 +35,8 @@ def answer(way: Way, loads: Loads) -> Answer:
         fields = dict(enumerate(module.solve_axes(scenes[0], **way.knobs)))
     else:
         fields = {axis: module.solve(each, **way.knobs) for axis, each in scenes.items()}
-    found = {axis: _known(each, way.method) for axis, each in fields.items()}
+    with of_conductivity_alone():
+        found = {axis: _known(each, way.method) for axis, each in fields.items()}
     if loads.diagonal:
         tensor = np.diag([found[axis].conductivity for axis in loads.alike])
         half = np.diag([found[axis].half for axis in loads.alike])
@@ -70,6 +72,13 @@ def _known(field: Field, method: str) -> _Known:
     error, k = field.error, field.conductivity
     # An interval need not have the answer in its middle.
     return _Known(k, max(error.upper - k, k - error.lower), field.mean_flux, error.flux, error.how)
+
+
+def half_of(field: Field, method: str) -> tuple[float, bool]:
+    """Half of the interval of a field's conductivity, W/(m K), and whether it is about what that is extrapolated to."""
+    with of_conductivity_alone():
+        found = _known(field, method)
+    return found.half, found.conductivity != field.conductivity
 
 
 def excess(found: Answer, accuracy: float) -> float:

@@ -2,7 +2,9 @@
 
 The relative error of the conductivity is A (h/s)^p g: h the size of an element, s the scene's smallest width, and
 g = strength^a (1 + contrast)^b fraction^c gap^d; of multipoles, whose errors fall by a factor with each degree, (h/s)
-stands for exp(-2 degree acosh(1 + gap/2)), with which the waves between two equal spheres decay. The processor time is
+stands for exp(-2 degree acosh(1 + gap/2)), with which the waves between two equal spheres decay. Half of the interval
+that a method gives has a law of the same form; of multipoles, whose interval is asked for, it is that of the error. The
+processor time is
 (B + u V/h^3 + v S/h^2 + w n + ...) (1 + contrast)^r with the box's volume V, the interfaces' surface S and the number n
 of inclusions; what follows are surfaces whose nearest points must be searched for, the number of such bodies, and
 surfaces of functions. The memory is a sum of the first of these. The measures of a scene are those of
@@ -36,6 +38,8 @@ KINDS = {"method": str, "knob": str, "rows": int, "scenes": int}
 # Edges of elements on a small sphere over its diameter, as `references.mesh` has them: no size asked for makes them
 # longer.
 ON_SPHERE = 0.165
+# Of the logarithm of the factor within which nine in ten are, about a standard deviation.
+LIKELY = 0.6
 # Below that a measure makes no difference: exponents of it must not blow up where it vanishes.
 LEAST = 1e-3
 
@@ -57,6 +61,14 @@ class Law(NamedTuple):
     fraction: float
     gap: float
     error_within: float  # Factor within which nine of ten fitted errors are
+    # half, half_refinement and so on: The same of half of the interval
+    half: float
+    half_refinement: float
+    half_strength: float
+    half_contrast: float
+    half_fraction: float
+    half_gap: float
+    half_within: float
     # base, bulk, surface, each: B, u, v and w, s
     base: float
     bulk: float
@@ -76,6 +88,18 @@ class Law(NamedTuple):
     # rows, scenes: Values and scenes that the law was fitted to
     rows: int
     scenes: int
+
+    @property
+    def error_powers(self) -> np.ndarray:
+        """With which the law of the error weighs `error_terms`, (6,) float array."""
+        return _powers(self.error, self.refinement, self.strength, self.contrast, self.fraction, self.gap)
+
+    @property
+    def half_powers(self) -> np.ndarray:
+        """The same of half of the interval."""
+        return _powers(
+            self.half, self.half_refinement, self.half_strength, self.half_contrast, self.half_fraction, self.half_gap
+        )
 
     @property
     def seconds(self) -> tuple[float, ...]:
@@ -114,19 +138,28 @@ def predicted(method: str, scene: Scene | Measures, value: float) -> Predicted:
 
 def needed(method: str, scene: Scene | Measures, accuracy: float, *, sure: bool = True) -> float | int:
     """Coarsest value of a method's resolution with which the conductivity will be as accurate as asked."""
-    law, m = law_of(method), _measured(scene)
+    law = law_of(method)
     finite("accuracy", accuracy, "a number between 0 and 1", lambda v: 0 < v < 1)
-    if law.refinement <= 0:
-        raise ValueError(f"method = {method!r}: its errors were not found to fall with the resolution")
     goal = math.log(accuracy) - (math.log(law.error_within) if sure else 0.0)
-    return _value(law, m, _refined(law, m, goal))
+    return _needed(law, _measured(scene), goal, law.error_powers)
 
 
-def _refined(law, m, goal):
-    """Logarithm of h/s, or of what stands for it, at which the logarithm of the error is what is wanted."""
-    terms, powers = error_terms(law.knob, m, 1.0), _error_powers(law)
+def needed_to_show(method: str, scene: Scene | Measures, accuracy: float) -> float | int:
+    """The same with which half of its interval will most likely be as narrow: to run twice costs more."""
+    law = law_of(method)
+    finite("accuracy", accuracy, "a number between 0 and 1", lambda v: 0 < v < 1)
+    goal = math.log(accuracy) - LIKELY * math.log(law.half_within)
+    return _needed(law, _measured(scene), goal, law.half_powers)
+
+
+def _needed(law, m, goal, powers):
+    """Value at which the logarithm that powers are of is what is wanted."""
+    if not powers[1] > 0:
+        raise ValueError(f"method = {law.method!r}: its errors were not found to fall with the resolution")
+    terms = error_terms(law.knob, m, 1.0)
     terms[1] = 0.0
-    return (goal - terms @ powers) / law.refinement
+    # Logarithm of h/s, or of what stands for it.
+    return _value(law, m, (goal - terms @ powers) / powers[1])
 
 
 def _value(law, m, refined):
@@ -143,7 +176,7 @@ def _value(law, m, refined):
 
 def predicted_by(law: Law, m: Measures, value: float) -> Predicted:
     """What a law predicts."""
-    error = math.exp(error_terms(law.knob, m, value) @ _error_powers(law))
+    error = math.exp(error_terms(law.knob, m, value) @ law.error_powers)
     return Predicted(error, *_work(law, m, size_terms(law.knob, m, value)))
 
 
@@ -203,5 +236,5 @@ def _decay(m):
     return 2 * math.acosh(1 + m.gap / 2)
 
 
-def _error_powers(law):
-    return np.array([math.log(law.error), law.refinement, law.strength, law.contrast, law.fraction, law.gap])
+def _powers(amount, *exponents):
+    return np.array([math.log(amount), *exponents])

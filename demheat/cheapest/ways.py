@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat import dem
-from demheat.cheapest.cost_laws import ON_SPHERE, needed, predicted, work
+from demheat.cheapest.cost_laws import ON_SPHERE, needed, needed_to_show, predicted, work
 from demheat.cheapest.loads import Loads
 from demheat.cheapest.measures import PORE, Measures, measures
 from demheat.runtime.extras import lacking
@@ -43,9 +43,6 @@ TAKES = {
 # Methods whose answers are extrapolated (`Field.extrapolated`), where their scene lets them: the interval of that is
 # narrower than the one about the answer, and its coarser runs cost less.
 EXTRAPOLATED = ("fem", "fft")
-# An interval is so many times the error, in the median: what is asked of the laws is the error, which is that of the
-# answer itself; about what it is extrapolated to, the interval is so many times that error.
-INTERVAL, ABOUT_LIMIT = 2.5, {"fem": 1.0, "fft": 1.5}
 # Orders with which intervals fall, at least: errors scatter.
 ORDERS = {"fem": 2.5, "fft": 1.0, "dem": 1.8}
 # Edges of elements from one run to the next, and how many times.
@@ -143,7 +140,7 @@ def _refined(name, loads, accuracy, memory):
         return on_image(name, loads, accuracy, memory)
     (knob, power), (law, part) = KNOBS[name], _law(name, loads)
     limit = _has_limit(name, law, loads)
-    value = needed(law, part, accuracy / (ABOUT_LIMIT[name] if limit else INTERVAL), sure=False)
+    value = needed_to_show(law, part, accuracy)
     cost, first = predicted(law, part, value), value
     # Laws of the error may be far off: begin with what costs little, its interval says how far to go from there.
     while predicted(law, part, first).cpu_s > FIRST:

@@ -1,83 +1,58 @@
-"""What `recommend` names beforehand, beside what searches found: its laws are of other scenes than those held back."""
+"""What `recommend` and `effective` are worth on scenes that none of their laws was fitted to."""
 
 from __future__ import annotations
 
-import math
 import statistics
-from functools import cache
-from typing import NamedTuple
 
-from demheat.cheapest import recommend
-from demheat.cheapest.loads import loads_of
-from demheat.cheapest.ways import BESIDES, FOR_LIMIT
-from studies.frontier import means
-from studies.frontier.scenes import scene_of
-from studies.frontier.ways import WAYS
+from studies.frontier import asked, means
 
-# Per cent of the conductivity.
-ASKED = (1.0, 0.1, 0.01)
-# Bytes, of a usual machine: what is named must not change with the one that asks.
-MEMORY = 8 * 2**30
+# Set by what was asked of them: a cost within this factor of what was said, and of the cheapest.
+SAID, DEAREST = 3.0, 5.0
+# Of intervals that hold.
+HOLD = 0.95
 
 
-class Advice(NamedTuple):
-    """Of one scene and accuracy: the method named, what it is guessed and was found to cost, and the cheapest, s."""
-
-    scene: str
-    target: float
-    method: str
-    guessed: float
-    found: float
-    best: str
-    least: float
-
-    @property
-    def factor(self):
-        """How many times as much as the cheapest it costs; infinite if it was not found to get there."""
-        return self.found / self.least
-
-    @property
-    def off(self):
-        """Factor, 1 or more, between what was guessed and what was found."""
-        return max(self.guessed / self.found, self.found / self.guessed)
+def there(df):
+    """Where it got there by what is no closed form, which costs nothing."""
+    return [each for each in asked.all_told(df) if each.method not in ("", "exact")]
 
 
-def advices(df):
-    """All that can be judged: where any way was found to get there."""
-    for scene in means.scenes_of(df, held_back=True):
-        for target in ASKED:
-            ways = means.reached(df, scene, "conductivity", target, any_shape=False)
-            # Closed forms are in no search.
-            if ways and _named(scene, target)[0] != "exact":
-                yield _advice(scene, target, ways)
-
-
-def _advice(scene, target, ways):
-    method, guessed = _named(scene, target)
-    own = [each.cpu_s for each in ways if each.family == method and WAYS[each.way].own]
-    found = min(own, default=math.inf)
-    return Advice(scene, target, method, guessed, found, ways[0].title, ways[0].cpu_s)
-
-
-@cache
-def _named(scene, target):
-    """Method that is named, and seconds that one solve of it is guessed to take."""
-    found = recommend(scene_of(scene), target / 100, memory=MEMORY)
-    # Of one load, without the coarser runs of an interval; which were counted goes by the method.
-    loads = loads_of(scene_of(scene))
-    counted = len(loads.parts) * (FOR_LIMIT if found.method in ("fem", "fft") else BESIDES)
-    return found.method, found.cpu_s / (len(loads.wholes) if found.method == "multipole" else counted)
+def claims(df):
+    """What was asked of `recommend`, and that intervals hold."""
+    found = there(df)
+    if not found:
+        return
+    text = "recommend: its guess of a cost and what `effective` took, factor between"
+    yield f"{text}, median", statistics.median(each.off for each in found), SAID
+    yield f"{text}, largest", max(each.off for each in found), SAID
+    yield "effective: its cost over that of the cheapest method, largest", max(each.factor for each in found), DEAREST
+    known = [each for each in asked.all_told(df) if each.half == each.half]
+    share = sum(each.error <= each.half for each in known) / len(known)
+    yield "effective: intervals that hold, share", share, f">= {HOLD}"
 
 
 def in_words(df):
     """What it is worth, in numbers."""
-    found = list(advices(df))
-    there = [each for each in found if each.found < math.inf]
-    factors = sorted(each.factor for each in there)
-    within = statistics.median(each.off for each in there)
-    lost = len(found) - len(there)
+    every, found = asked.all_told(df), there(df)
+    if not found:
+        return "of none it is known yet."
+    closed = sum(each.method == "exact" for each in every)
+    late = len(every) - closed - len(found)
+    near = sum(each.off <= SAID for each in found)
+    offs, factors = [each.off for each in found], [each.factor for each in found]
     return (
-        f"of {len(found)} pairs of scene and accuracy what it names costs {statistics.median(factors):.2g} times the "
-        f"least in the median and {factors[-1]:.2g} times at most, and its guess of that cost is {within:.2g} times "
-        f"off in the median; on {lost} what it names was not found to get there."
+        f"of {len(every)} pairs of scene and accuracy {closed} have a closed form; `effective` got there on "
+        f"{len(found)} of the others within {asked.LONGEST_S:g} seconds, where `recommend` had said its cost within a "
+        f"factor of {SAID:g} on {near}, {statistics.median(offs):.2g} in the median and {max(offs):.2g} at most; it "
+        f"cost {statistics.median(factors):.2g} times the cheapest method's in the median and {max(factors):.2g} at "
+        f"most, and {statistics.median(_over(df, found)):.2g} times, in the median, what one solve of the right size "
+        f"costs whoever knows the truth; on {late} time was over."
     )
+
+
+def _over(df, found):
+    """How many times as much it cost as the cheapest single solve that the searches found."""
+    for each in found:
+        ways = means.reached(df, each.scene, "conductivity", each.target, any_shape=False)
+        if ways:
+            yield each.cpu_s / ways[0].cpu_s

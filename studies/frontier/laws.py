@@ -8,6 +8,7 @@ other, with a little pull of every exponent of a scene's measure towards none: t
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 import sys
@@ -20,7 +21,7 @@ import numpy as np
 from demheat.cheapest import cost_laws as shipped
 from demheat.cheapest.measures import Measures
 from demheat.cheapest.ways import law_and_measures
-from studies.frontier import means
+from studies.frontier import halves, means
 from studies.frontier.scenes import FOR_LAWS, STEADY, scene_of
 from studies.frontier.ways import WAYS
 
@@ -62,7 +63,32 @@ def fitted(df):
         for tried in _tried(df, method, way):
             found.setdefault(_law_of(method, tried.scene)[0], []).append(tried)
     laws = {name: _law(name, tried) for name, tried in sorted(found.items())}
+    shown = _shown()
+    laws = {name: law._replace(**_law_of_halves(law, shown.get(name, ()))) for name, law in laws.items()}
     return {name: _with_siblings(law, laws.values()) for name, law in laws.items()}
+
+
+def _shown():
+    """Intervals by the name of the law, half of them in the place of errors."""
+    found: dict = {}
+    with halves.FILE.open(newline="", encoding="utf-8") as stream:
+        for row in csv.DictReader(stream):
+            name, m = law_and_measures(row["method"], halves.part_of(row["scene"]))
+            half = float(row["half"])
+            if half > FLOOR and row["scene"] not in NEUTRAL:
+                found.setdefault(name, []).append(Tried(row["scene"], m, float(row["value"]), half, math.nan, math.nan))
+    return found
+
+
+def _law_of_halves(law, shown):
+    """Fields of a law that tell of half of its intervals."""
+    names = ("half", "half_refinement", "half_strength", "half_contrast", "half_fraction", "half_gap", "half_within")
+    if not shown:
+        powers = (law.error, law.refinement, law.strength, law.contrast, law.fraction, law.gap, law.error_within)
+        return dict(zip(names, powers, strict=True))
+    terms = np.array([shipped.error_terms(law.knob, each.measures, each.value) for each in shown])
+    (first, *others), spread = _fit(terms, np.log([each.error for each in shown]), _weights(shown))
+    return dict(zip(names, (float(np.exp(first)), *map(float, others), spread), strict=True))
 
 
 def _with_siblings(law, laws):
@@ -104,7 +130,8 @@ def _law(name, tried):
     edges = [each.value / (each.measures.edge if knob == "size" else 1.0) for each in tried]
     ends = sorted((min(edges), max(edges)), reverse=knob == "size")
     return shipped.Law(
-        name, knob, *ends, np.exp(error[0]), *error[1:], spread, *parts, stiff, cost_spread, *each_bytes, bytes_spread,
+        name, knob, *ends, np.exp(error[0]), *error[1:], spread, *[math.nan] * 7, *parts, stiff, cost_spread,
+        *each_bytes, bytes_spread,
         len(tried), len({each.scene for each in tried}),
     )  # fmt: skip
 

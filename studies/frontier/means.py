@@ -6,10 +6,9 @@ import json
 from collections.abc import Mapping
 from typing import NamedTuple
 
-import numpy as np
-
-from studies.frontier.scenes import HELD_BACK, SCENES, TUNED
-from studies.frontier.search import QUANTITIES, TARGETS, Point, reaching
+from studies.frontier.in_time import IN_TIME
+from studies.frontier.scenes import HELD_BACK, SCENES, STEADY, TUNED
+from studies.frontier.search import TARGETS
 from studies.frontier.ways import NEAR, WAYS
 
 # Of a row that is there, by what is compared; an extrapolated conductivity is a conductivity.
@@ -52,6 +51,7 @@ def searched(df) -> bool:
 
 def longest(df):
     """Of each scene and way the search that was given most."""
+    df = df[df["way"].isin(WAYS)]
     if "seconds" not in df or not len(df):
         return df
     return df.sort_values("seconds", kind="stable").groupby(["scene", "way"], sort=False).tail(1)
@@ -71,35 +71,13 @@ def reached(df, scene, quantity, target, *, any_shape=True, peers=False):
 
 
 def _cheapest(row, column, target):
-    """Of all values that get to a target the cheapest, or None: a coarser one need not be that."""
-    # What gets farther gets there, too; targets that cannot be judged have no column.
-    if all(np.isnan(row.get(f"{column}_{each:g}_s", np.nan)) for each in TARGETS if each <= target):
+    """Of all values that get to a target the cheapest, or None: what gets farther gets there, too."""
+    told = json.loads(row[column]) if isinstance(row.get(column), str) else {}
+    there = [told[name] for name in told if float(name) <= target and isinstance(told[name], list)]
+    if not there:
         return None
-    points = list(_tried(row))
-    there = [points[place] for place in reaching(points, column, target)]
-    spreads = {told[0]: told[5] or 0.0 for told in _decided(row, column)}
-    again = min((each for each in there if each.value in spreads), key=lambda point: point.cost(column))
-    once = min(there, key=lambda point: point.cost(column))
-    # What was run once, of no scatter of its own, must cost less by more than values of a knob are tried apart.
-    best = once if again.cost(column) > NEAR * once.cost(column) else again
-    return Reached(
-        row["way"], column == "extrapolated", best.cost(column), spreads[again.value], best.value, best.errors[column]
-    )
-
-
-def _tried(row):
-    """All that a search tried, the costs of each medians of its runs."""
-    for value, unknowns, walked, *parts in json.loads(row["trail"]):
-        known = {name: part for name, part in zip(QUANTITIES, parts, strict=True) if part and part[0] is not None}
-        errors = {name: part[0] for name, part in known.items()}
-        costs = {name: [(part[1],)] for name, part in known.items()}
-        yield Point(value, errors, costs, unknowns, bool(walked))
-
-
-def _decided(row, column):
-    """What is told of the values that were run again."""
-    told = row.get(column)
-    return [each for each in json.loads(told).values() if isinstance(each, list)] if isinstance(told, str) else []
+    value, cpu_s, _, _, error, spread, _ = min(there, key=lambda each: each[1])
+    return Reached(row["way"], column == "extrapolated", cpu_s, spread or 0.0, value, error)
 
 
 def best(df, scene, quantity, target, *, any_shape=True):
@@ -136,10 +114,10 @@ def wins(df, quantity, target, scenes) -> Mapping[str, list[str]]:
     return found
 
 
-def scenes_of(df, *, held_back=False):
+def scenes_of(df, among=SCENES):
     """Scenes of the rows, in order."""
     there = set(df["scene"])
-    return [scene for scene in (HELD_BACK if held_back else SCENES) if scene in there]
+    return [scene for scene in among if scene in there]
 
 
 def judged(df, quantity, target):
@@ -147,7 +125,7 @@ def judged(df, quantity, target):
     column = df.get(quantity)
     told = {} if column is None else column.dropna().map(json.loads)
     there = {df.at[at, "scene"] for at, each in dict(told).items() if f"{target:g}" in each}
-    return [scene for scene in scenes_of(df) if scene in there]
+    return [scene for scene in scenes_of(df, (*SCENES, *IN_TIME)) if scene in there]
 
 
 def starred(scene):
@@ -207,6 +185,21 @@ def counted(df, quantity, target):
     return f"{head}: {'; '.join(filter(None, parts))}."
 
 
+def strictly(df, quantity, target):
+    """The same without ties and each body once, whatever its contrast; and of scenes held back alone."""
+    alone = {
+        scene: each.first.family
+        for scene in judged(df, quantity, target)
+        if (each := best(df, scene, quantity, target)) is not None and len(each.tied) == 1
+    }
+    parts = []
+    for name, title in TITLES.items():
+        won = [scene for scene, family in alone.items() if family == name]
+        bodies = {scene.split(" at ")[0] if scene in STEADY else scene for scene in won}
+        parts.append(f"{title} on {len(bodies)}, {sum(scene in HELD_BACK for scene in won)} of them held back")
+    return f"Without ties and each body once, to {target:g} % of the {quantity}: {'; '.join(parts)}."
+
+
 def _alone(name, found):
     """Scenes that one method wins without a tie."""
     won = [scene for scene, each in found.items() if len(each.tied) == 1 and each.first.family == name]
@@ -240,5 +233,6 @@ __all__ = [
     "reached",
     "scenes_of",
     "starred",
+    "strictly",
     "wins",
 ]

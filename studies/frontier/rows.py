@@ -11,6 +11,7 @@ import warnings
 from demheat import budget, referee
 from demheat.declared import load
 from demheat.runtime.process_state import stopwatch
+from studies.frontier import in_time
 from studies.frontier.peer import found
 from studies.frontier.scenes import scene_of
 from studies.frontier.search import MOST_S, QUANTITIES, TARGETS, Point, cheapest, foreseen, search
@@ -33,6 +34,8 @@ def searched(name: str, way: str, seconds: float) -> dict:
     how = begun(WAYS[way], scene)
 
     def judged(quantity, target):
+        if how.marches:
+            return quantity == "temperature"
         if quantity == "extrapolated" and not how.extrapolates:
             return False
         if quantity in ("temperature", "flux") and truth.field is None:
@@ -42,7 +45,7 @@ def searched(name: str, way: str, seconds: float) -> dict:
     # What is loaded is no garbage, which each run looks for before it begins.
     gc.collect()
     gc.freeze()
-    trail = search(how, lambda value, wanted: _point(how, scene, truth, value, wanted), budget=seconds, judged=judged)
+    trail = search(how, lambda value, wanted: _point(how, name, truth, value, wanted), budget=seconds, judged=judged)
     if not trail.points:
         raise NotImplementedError(trail.ended)
     row = {"true_k": truth.conductivity, "true_off": truth.off, "true_by": truth.source}
@@ -57,9 +60,14 @@ def searched(name: str, way: str, seconds: float) -> dict:
 
 
 def at_point(name: str, way: str) -> dict:
-    """Conductivity at the value of the knob that stands for the row, and what that is extrapolated to; no costs."""
+    """Conductivity at the value of the knob that stands for the row, and what that is extrapolated to; no costs.
+
+    Of a body that warms up the error of its temperature.
+    """
     how, scene = WAYS[way], scene_of(name)
     row = {"point": how.point}
+    if how.marches:
+        return row | {"point_temperature": in_time.error_of(name, in_time.marched(how, name, how.point))}
     # Elements that are too coarse there: finer ones of the search need not be.
     with budget(MOST_S), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=QUIET)
@@ -82,10 +90,10 @@ def _solved(way, scene, value):
     return load(way.method).solve(scene, **knobs_at(way, value, scene))
 
 
-def _point(way, scene, truth, value, wanted):
+def _point(way, name, truth, value, wanted):
     """Errors and costs at one value, a packing made on the spot."""
     if way.peer:
-        return _of_peer(found(way, scene, value), value, truth)
+        return _of_peer(found(way, scene_of(name), value), value, truth)
     forget()
     with (
         tempfile.TemporaryDirectory() as folder,
@@ -94,7 +102,10 @@ def _point(way, scene, truth, value, wanted):
         warnings.catch_warnings(),
     ):
         warnings.filterwarnings("ignore", message=QUIET)
-        (errors, costs, unknowns), whole = measured(_asked, way, scene, truth, value, wanted)
+        if way.marches:
+            (errors, costs, unknowns), whole = measured(_marched, way, name, value)
+        else:
+            (errors, costs, unknowns), whole = measured(_asked, way, scene_of(name), truth, value, wanted)
     costs = {name: [(*cost, whole["peak_mib"])] for name, cost in costs.items()}
     return Point(value, errors, costs, unknowns, walked=True)
 
@@ -125,6 +136,15 @@ def _asked(way, scene, truth, value, wanted):
         errors |= _at_points(field, truth, warm, flux)
     costs["all"] = _now(spent)
     return errors, costs, field.stats["unknowns"]
+
+
+def _marched(way, name, value):
+    """The same through time, where to look at temperatures is part of it."""
+    spent = stopwatch()
+    found = in_time.marched(way, name, value)
+    cost = _now(spent)
+    errors = {"temperature": in_time.error_of(name, found)}
+    return errors, dict.fromkeys(("conductivity", "temperature", "all"), cost), found[-1][0].stats["unknowns"]
 
 
 def _now(spent):
@@ -195,5 +215,7 @@ def warm_up(name: str, way: str) -> None:
     """Load and compile what a way needs, at a size that costs next to nothing; work out what is true."""
     how = WAYS[way]
     truth_of(name)
-    if not how.peer:
+    if how.marches:
+        in_time.marched(how, "slab", how.first)
+    elif not how.peer:
         methods.warm_up(how.method, **how.knobs)

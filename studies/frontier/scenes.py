@@ -14,6 +14,7 @@ from demheat.gallery import EDGE, HADDAD, loaded, scaled
 from demheat.powers import cube_root
 from demheat.scene import Box, Cylinder, Ellipsoid, Image, LevelSet, Material, Scene, Sphere, Union
 from studies.common.steady_scenes import STEADY, STEADY_TITLES, TUNED  # noqa: F401 (known from here, too)
+from studies.frontier.in_time import IN_TIME
 
 # Of what is placed at random here; scenes of other studies have other seeds.
 SEED = 4040
@@ -221,10 +222,13 @@ TITLES = STEADY_TITLES | {
     "resistance": "12 spheres that resist",
     "box of 1:1:4": "30 spheres in a box of 1:1:4",
     "5000 spheres": "5000 spheres, f = .2",
+    "slab": "slab that warms up",
+    "ball": "ball that warms up",
+    "beam": "beam that warms up",
 }
 
 
 @lru_cache(2)
 def scene_of(name: str) -> Scene:
     """A scene by its name."""
-    return (SCENES | FOR_LAWS)[name]()
+    return (SCENES | FOR_LAWS | IN_TIME)[name]()

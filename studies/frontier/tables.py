@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from studies.frontier import means
+from studies.frontier.scenes import SCENES
 from studies.frontier.search import TARGETS
 
 
-def lines(df, quantity="conductivity", targets=TARGETS):
+def lines(df, quantity="conductivity", targets=TARGETS, among=SCENES):
     """The cheapest way for any shape to each accuracy, and the next."""
     import pandas as pd
 
     found = []
     known = {target: means.judged(df, quantity, target) for target in targets}
-    for scene in means.scenes_of(df):
+    for scene in means.scenes_of(df, among):
         cells = {
             f"{target:g} %": cell(means.best(df, scene, quantity, target)) if scene in known[target] else "?"
             for target in targets

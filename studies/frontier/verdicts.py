@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import statistics
-
 import numpy as np
 
 from demheat import referee
@@ -39,15 +36,7 @@ def all_claims(df):
         column = f"{quantity}_{target:g}_s"
         if column in each and each[column].notna().any():
             count = len(means.wins(df, quantity, target, means.scenes_of(df)).get("dem", ()))
+            # As it was guessed: ties count, and so does each contrast of a body.
             text = f"Scenes on which the DEM is the cheapest for any shape, or ties, to {target:g} % of the {quantity}"
             yield text, count, f">= {least}"
-    if means.searched(df):
-        yield from _advised(df)
-
-
-def _advised(df):
-    """How good `recommend` is on scenes that none of its laws was fitted to; limits set before."""
-    there = [each for each in advice.advices(df) if each.found < math.inf]
-    yield "recommend: cost of what it names over the least, largest", max((e.factor for e in there), default=None), 5.0
-    off = sorted(each.off for each in there)
-    yield "recommend: its guess of a cost and what was found, factor between, median", statistics.median(off), 3.0
+    yield from advice.claims(df)

@@ -35,6 +35,7 @@ class Way(NamedTuple):
     own: bool = False  # Whether it is what the method does by itself
     spheres: bool = False  # Whether it knows disjoint spheres only
     peer: bool = False  # Whether others wrote it
+    marches: bool = False  # Whether it goes through time
 
 
 WAYS = {
@@ -57,6 +58,14 @@ WAYS = {
     "fft-image": Way("FFT", "fft", "fft", {}, "parts", 1, 1, own=True),
     "fft-image-loose": Way("FFT, tolerance 1e-3", "fft", "fft", {"tolerance": 1e-3}, "parts", 1, 1),
     "multipole": Way("multipoles", "multipole", "multipole", {}, "order", 1, 3, own=True, spheres=True),
+    # Through time, steps as fine as elements ask for, or as the methods have them by themselves.
+    "dem-time": Way("DEM", "dem", "dem", {}, "particles", 250, 2000, marches=True),
+    "dem-time-own": Way("DEM, its own steps", "dem", "dem", {}, "particles", 250, 2000, own=True, marches=True),
+    "fem-time": Way("FEM, degree 2", "fem", "fem", {"order": 2}, "size", 0.4, 0.2, marches=True),
+    "fem-p1-time": Way("FEM, degree 1", "fem-p1", "fem", {"order": 1}, "size", 0.2, 0.1, marches=True),
+    "fem-bricks-time": Way(
+        "FEM, bricks", "fem-bricks", "fem", {"elements": "hexahedra"}, "size", 0.2, 0.1, marches=True
+    ),
     "ngsolve": Way("NGSolve, degree 3", "fem", "ngsolve", {"order": 3}, "size", 0.5, 0.2, peer=True),
 }
 

@@ -1,54 +1,36 @@
-"""Lines of the table: the cheapest method for each scene in time and target."""
+"""Lines of the table: what a solve or a kernel costs beside the same again, or beside its peer."""
 
 from __future__ import annotations
 
 import pandas as pd
 
-from studies.speed_error import means
+from studies.harness import methods
+
+# Of a row: its peer, and the column of what that costs.
+PEERS = {
+    "tessellation": (("Voro++", "peer_us_per_particle"),),
+    "steady": (("pyamg, Ruge-Stuben", "ruge_stuben_cpu_s"), ("pyamg, aggregation", "aggregation_cpu_s")),
+}
 
 
 def lines(df):
-    """One line for each scene and target."""
-    found = means.winners(df)
-    return pd.DataFrame(
-        {
-            "scene": found["scene"],
-            "target, %": found["target"],
-            "cheapest": found["name"].map(means.label),
-            "resolution": found["resolution"],
-            "error, %": found["error"],
-            "CPU, s": found["cpu_s"],
-            "at the target": found["at_target_s"],
-            "wall, s": found["wall_s"],
-            "MiB": found["peak_mib"],
-            "unknowns": found["unknowns"],
-            "DEM's cost over it": found["dem"].map(_times),
-            "next": [_next(row) for row in found.itertuples()],
-        }
-    )
+    """One line for each pair."""
+    found = [line for row in df[df["status"] == "ok"].to_dict("records") for line in _lines(row)]
+    return pd.DataFrame(found, columns=["what", "size", "CPU, s", "beside it", "its cost over ours"])
 
 
-def by_accuracy(df):
-    """One line for each scene, a column for each target: the cheapest method, and others beside it."""
-    best = means.winners(df)
-    best = best.assign(cell=[_cell(row) for row in best.itertuples()])
-    wide = best.pivot(index="scene", columns="target", values="cell").reindex(best["scene"].unique())
-    return wide[sorted(wide.columns, reverse=True)].rename(columns=lambda target: f"{target:g} %").reset_index()
+def _lines(row):
+    if row["name"] in PEERS:
+        what = {"tessellation": "Laguerre tessellation", "steady": "steady equations"}[row["name"]]
+        ours = row["us_per_particle" if row["name"] == "tessellation" else "cpu_s"]
+        size = f"{row['particles']:.0f} particles"
+        for peer, column in PEERS[row["name"]]:
+            yield _line(what, size, row["cpu_s"], peer, row[column] / ours)
+    elif row.get("cached_cpu_s", 0) > 0:
+        title = methods.all_methods()[row["name"]].title
+        size = f"{row['particles']:.0f} particles, seed {row['seed']:.0f}"
+        yield _line(f"{title}, {row['scene']}", size, row["cpu_s"], "again", row["cached_cpu_s"] / row["cpu_s"])
 
 
-def _cell(row):
-    """Such as "FEM: 0.23 s (DEM 2.1 times)"; "tie of FEM and DEM: 0.23 s"; "DEM: 0.2 s (next FEM, 2.1 times)"."""
-    names = " and ".join(map(means.label, row.tied))
-    cheapest = f"{'tie of ' if len(row.tied) > 1 else ''}{names}: {row.at_target_s:.2g} s"
-    if "dem" in row.tied:
-        return cheapest + (f" ({_next(row)})" if row.next else "")
-    return cheapest + (" (DEM: no)" if row.dem != row.dem else f" (DEM {row.dem:.2g} times)")
-
-
-def _next(row):
-    """The cheapest method that does not tie, and how many times as much it costs."""
-    return f"next {means.label(row.next)}, {row.margin:.2g} times" if row.next else ""
-
-
-def _times(ratio):
-    return "does not reach it" if ratio != ratio else f"{ratio:.2g}"
+def _line(*cells):
+    return dict(zip(("what", "size", "CPU, s", "beside it", "its cost over ours"), cells, strict=True))

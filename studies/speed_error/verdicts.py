@@ -5,11 +5,8 @@ from __future__ import annotations
 from demheat import referee
 from studies.harness.pick import pick, present
 from studies.speed_error import means
-from studies.speed_error.cases import COMPARED, MARCHED, TIGHT, TO_LIMIT
-from studies.speed_error.scenes import IN_TIME
+from studies.speed_error.cases import COMPARED, TIGHT, TO_LIMIT
 
-# Errors of the DEM in time, % of the span.
-IN_TIME_LIMITS = {"slab": 0.1, "ball": 0.1, "beam": 0.015}
 # Solves that were run twice, at least, of which nine in ten say something.
 OFTEN = 20
 
@@ -17,12 +14,6 @@ OFTEN = 20
 def all_claims(df):
     """All claims whose rows are there."""
     yield from present([*_kernels(df), *_schemes(df)])
-    for scene in IN_TIME:
-        most = MARCHED["particles"][-1]
-        finest = pick(df, scene=scene, name="dem", particles=most)
-        if len(finest):
-            text = f"DEM in time, {most} particles, {scene}: error rms at the worst time, % of the span"
-            yield text, finest["error_percent"].max(skipna=False), IN_TIME_LIMITS[scene]
     again = means.run_twice(df)
     if len(again) >= OFTEN:
         yield "DEM, the same solve twice: factor within which nine costs in ten are", again.quantile(0.9), means.TIE

@@ -10,6 +10,7 @@ import pytest
 
 from studies.frontier import search as search_module
 from studies.frontier.cases import all_cases, foreseen
+from studies.frontier.in_time import IN_TIME, knobs_in_time
 from studies.frontier.scenes import FOR_LAWS, HELD_BACK, SCENES, TUNED
 from studies.frontier.search import Point, cheapest, reached, search
 from studies.frontier.search import foreseen as foreseen_seconds
@@ -149,10 +150,20 @@ def test_voxels_divide_well():
     assert math.prod(knobs_at(WAYS["fft"], 40, box)["voxels"]) == pytest.approx(40**3, rel=0.05)
 
 
+def test_steps_through_time_err_by_a_part_of_what_elements_do():
+    """Tied to the square of an edge, in edges of the box; a method by itself has its own steps."""
+    cube = SimpleNamespace(volume=8.0)
+    coarse, fine = (knobs_in_time(WAYS["dem-time"], n, cube)["accuracy"] for n in (1000, 8000))
+    assert coarse == pytest.approx(3e-4) and coarse / fine == pytest.approx(4.0)
+    halved = [knobs_in_time(WAYS["fem-time"], edge, cube) for edge in (0.2, 0.1)]
+    assert halved[0]["size"] == pytest.approx(0.4) and halved[0]["accuracy"] == pytest.approx(4 * halved[1]["accuracy"])
+    assert "accuracy" not in knobs_in_time(WAYS["dem-time-own"], 1000, cube)
+
+
 def test_scenes_are_enough_and_none_is_named_twice():
     assert len(HELD_BACK) >= 10 and not set(HELD_BACK) & TUNED_NAMES
     cases = list(all_cases())
-    assert {case["scene"] for case in cases} == {*SCENES, *FOR_LAWS}
+    assert {case["scene"] for case in cases} == {*SCENES, *FOR_LAWS, *IN_TIME}
     assert not set(SCENES) & set(FOR_LAWS)
     # Most searches end before their seconds do.
     stored = Path(__file__).parents[3] / "results" / "frontier.csv"
