@@ -6,7 +6,8 @@ from demheat.method import CUT, PARTICLES, UNTURNED, Errors, Method, Orders
 from demheat.runtime.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from demheat.dem.solver import evolve, solve, solve_axes
+    from demheat.dem.solver import solve, solve_axes
+    from demheat.dem.transient import evolve
 
 __all__ = ["evolve", "solve", "solve_axes"]
 
@@ -95,4 +96,5 @@ METHODS = (
 
 # What is heavy loads with the first use; type checkers do not see it, see `lazy_names`.
 if not TYPE_CHECKING:
-    __getattr__, __dir__ = lazy_names(__name__, {"demheat.dem.solver": ("evolve", "solve", "solve_axes")})
+    _HOMES = {"demheat.dem.solver": ("solve", "solve_axes"), "demheat.dem.transient": ("evolve",)}
+    __getattr__, __dir__ = lazy_names(__name__, _HOMES)

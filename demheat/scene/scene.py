@@ -5,7 +5,6 @@ A scene knows nothing of meshes, voxels or particles; every method reads the sam
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -37,6 +36,7 @@ from demheat.scene.needs import check_steady, check_transient, refusal, refusals
 from demheat.scene.parts import Convection, Flux, MovingCylinder, Radiation, UniformSource, driven, driver
 from demheat.scene.shapes import Shape
 from demheat.scene.shapes.holders import Holders
+from demheat.scene.told import told_of
 
 # Loads of walls that have no temperature of their own.
 OPEN = Flux | Convection | Radiation
@@ -320,23 +320,7 @@ class Scene:
 
     def _repr_html_(self) -> str:
         """A short table for notebooks."""
-        return table_of(self._told())
-
-    def _told(self):
-        """What is most asked of a scene, in words."""
-        kinds = Counter(shape.kind for shape in self.inclusions)
-        k = sorted(set(self.mean_conductivities.tolist()))
-        load = (
-            {"gradient": f"{self.gradient} K/m, a periodic cell"} if self.periodic else {"walls": _listed(self.walls)}
-        )
-        return {
-            "scene": f"{self.domain} of {' x '.join(f'{side:.6g}' for side in self.size)} m",
-            "inclusions": ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "none",
-            **({} if self.image is None else {"image": f"{' x '.join(map(str, self.image.shape))} voxels"}),
-            "conductivities": f"{', '.join(f'{each:.6g}' for each in k[:8])}{', ...' if len(k) > 8 else ''} W/(m K)"
-            + (", means over directions" if self.anisotropic else ""),
-            **load,
-        }
+        return table_of(told_of(self))
 
     def require(
         self,
@@ -395,7 +379,3 @@ def check_scene(scene, name="scene") -> None:
 
 def _plain(load):
     return load if callable(load) else float(load)
-
-
-def _listed(walls):
-    return ", ".join(f"{name}: {load}" for name, load in walls.items()) or "insulated"

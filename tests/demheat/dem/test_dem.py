@@ -117,7 +117,7 @@ def test_bad_input_before_heavy_work(change, words, monkeypatch):
     def heavy(*args, **kwargs):
         raise AssertionError("heavy work was begun")
 
-    monkeypatch.setattr("demheat.dem.solver.network_of", heavy)
+    monkeypatch.setattr("demheat.dem.solver.networks_of", heavy)
     with pytest.raises(ValueError, match=words):
         demheat.solve(ball(), **{"particles": 200} | change)
 
