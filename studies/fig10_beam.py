@@ -271,16 +271,17 @@ def _profile(warm, off, df, t):
 
 def _shown_and_hidden(axes, df):
     names = ("worst_0.05", "worst_0.1", "conductivity", "capacity", "diffusivity")
-    for number, ((law, contacts), (colour, _, name)) in enumerate(_looks().items()):
+    for number, ((law, contacts), (colour, marker, name)) in enumerate(_looks().items()):
         rows = pick(df, law=law, coordination=contacts)
         rows = rows[rows["particles"] == rows["particles"].max()]
         means = [rows[column].mean() for column in names]
         heights = [*means[:2], *(100 * abs(referee.value_error(mean, 1.0)) for mean in means[2:])]
         place = np.arange(5) + 0.2 * (number - 1.5)
-        axes.bar(place, np.maximum(heights, 1e-4), 0.18, color=colour, label=name)
+        # Points, as bars would have no foot on a logarithmic axis.
+        axes.plot(place, np.maximum(heights, 1e-4), marker, color=colour, label=name)
         for at, height in zip(place, heights, strict=True):
             text = f"{height:.2g}" if height > 1e-4 else "0"
-            above = {"xytext": (0, 2), "textcoords": "offset points", "ha": "center", "fontsize": 8}
+            above = {"xytext": (0, 5), "textcoords": "offset points", "ha": "center", "fontsize": 8}
             axes.annotate(text, (at, max(height, 1e-4)), **above)
     axes.axvline(1.5, color="black", linewidth=0.8, linestyle=":")
     shown = ["temperature, 50 ms", "temperature, 100 ms", "steady conductivity", "heat capacity", "diffusivity"]
