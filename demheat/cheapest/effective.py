@@ -13,7 +13,7 @@ import numpy as np
 
 from demheat.cheapest.answers import answer, certain, excess
 from demheat.cheapest.loads import loads_of
-from demheat.cheapest.ways import HOMES, Way, finer, knobs_of, ways
+from demheat.cheapest.ways import HOMES, Way, finer, knobs_of, shorter, ways
 from demheat.runtime.deadline import budget, look
 from demheat.runtime.limits import free_memory
 from demheat.runtime.process_state import cpu_seconds
@@ -190,8 +190,13 @@ def _found(loads, accuracy, allowed, memory):
                 way = begun = finer(way, loads, missing, memory)
             except TimeoutError as error:
                 return _so_far(best, accuracy, f"{way.method}: {one_line(error)}", passed)
-            except (NotImplementedError, RuntimeError, ValueError, MemoryError, ImportError) as error:
+            except (NotImplementedError, MemoryError, ImportError) as error:
                 way = way._replace(refused=one_line(error))
+            except (RuntimeError, ValueError) as error:
+                # Elements may be too long for the body.
+                way = shorter(way, loads, memory, one_line(error))
+                if not way.refused:
+                    passed.append(f"{way.method}: {one_line(error)}; begins anew with {knobs_of(way)}")
         if way.refused:
             passed.append(f"{way.method}: {way.refused}")
         else:

@@ -47,6 +47,10 @@ EXTRAPOLATED = ("fem", "fft")
 ORDERS = {"fem": 2.5, "fft": 1.0, "dem": 1.8}
 # Edges of elements from one run to the next, and how many times.
 SMALLEST, LARGEST, ROUNDS = 0.4, 0.9, 8
+# The same where a body has parts too thin for the first ones, and how many times that is tried.
+SHORTER, ANEW = 0.6, 2
+# How much closer than its interval was off multipoles are asked to come, and how many times.
+CLOSER, MORE_DEGREES = 0.5, 3
 # Processor seconds of the first run at most, and the edges of elements to get there, again and again.
 FIRST, COARSER = 3.0, 1.25
 # Such a step is worth it where it leaves this part of the cost, or less.
@@ -87,20 +91,34 @@ def ways(loads: Loads, accuracy: float, memory: float) -> list[Way]:
 def finer(way: Way, loads: Loads, missing: float, memory: float) -> Way:
     """The same way on smaller elements, as far as its interval says, and what that is now expected to cost."""
     told = f"half of its interval is {missing:.2g} times what is allowed with {knobs_of(way) or 'nothing to refine'}"
+    if way.method == "multipole" and way.rounds < MORE_DEGREES:
+        closer = _multipole(loads, CLOSER * way.knobs["accuracy"] / missing, memory)
+        return closer._replace(rounds=way.rounds + 1)
     if way.method not in KNOBS or way.rounds >= ROUNDS:
         return way._replace(refused=told)
     if loads.body.image is not None:
         return finer_image(way, loads, missing, memory, told)
+    return _on_shorter(way, loads, min(0.9 * missing ** (-1 / ORDERS[way.method]), LARGEST), memory, told)
+
+
+def shorter(way: Way, loads: Loads, memory: float, why: str) -> Way:
+    """The same way on shorter elements where they were too long for the body; refused where that helped not, twice."""
+    if way.method not in KNOBS or way.rounds >= ANEW or loads.body.image is not None:
+        return way._replace(refused=why)
+    return _on_shorter(way, loads, SHORTER, memory, why)
+
+
+def _on_shorter(way, loads, edge, memory, told):
+    """The same on elements whose edges are so many times as long, but no shorter than is taken at once."""
     knob, power = KNOBS[way.method]
-    wanted = min(0.9 * missing ** (-1 / ORDERS[way.method]), LARGEST)
     value, (law, part) = way.knobs[knob], _law(way.method, loads)
     if way.method == "fem":
         # Longer edges than those on the spheres change nothing there.
         value = min(value, ON_SPHERE * part.narrowest)
-    cost = predicted(law, part, _scaled(value, wanted, power))
+    cost = predicted(law, part, _scaled(value, edge, power))
     if cost.bytes > memory:
         return way._replace(refused=f"{told}; narrower ones would need {_gib(cost.bytes)}")
-    knobs = {**way.knobs, knob: _scaled(value, max(wanted, SMALLEST), power)}
+    knobs = {**way.knobs, knob: _scaled(value, max(edge, SMALLEST), power)}
     spent = _all(cost, loads, _has_limit(way.method, law, loads))
     return way._replace(knobs=knobs, cpu_s=spent, bytes=cost.bytes, doubt="", rounds=way.rounds + 1)
 

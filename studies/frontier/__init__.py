@@ -132,7 +132,6 @@ def notes(df):
         return
     for quantity, target in (("conductivity", 1.0), ("conductivity", 0.1), ("conductivity", 0.01), ("flux", 1.0)):
         yield means.in_words(df, quantity, target)
-        yield means.strictly(df, quantity, target)
 
 
 def verdict(df):

@@ -185,19 +185,10 @@ def counted(df, quantity, target):
     return f"{head}: {'; '.join(filter(None, parts))}."
 
 
-def strictly(df, quantity, target):
-    """The same without ties and each body once, whatever its contrast; and of scenes held back alone."""
-    alone = {
-        scene: each.first.family
-        for scene in judged(df, quantity, target)
-        if (each := best(df, scene, quantity, target)) is not None and len(each.tied) == 1
-    }
-    parts = []
-    for name, title in TITLES.items():
-        won = [scene for scene, family in alone.items() if family == name]
-        bodies = {scene.split(" at ")[0] if scene in STEADY else scene for scene in won}
-        parts.append(f"{title} on {len(bodies)}, {sum(scene in HELD_BACK for scene in won)} of them held back")
-    return f"Without ties and each body once, to {target:g} % of the {quantity}: {'; '.join(parts)}."
+def body_of(scene):
+    """Of scenes that differ in their contrast alone, the first."""
+    first = scene.split(" at ")[0]
+    return first if first in STEADY else scene
 
 
 def _alone(name, found):
@@ -205,8 +196,9 @@ def _alone(name, found):
     won = [scene for scene, each in found.items() if len(each.tied) == 1 and each.first.family == name]
     if not won:
         return f"{TITLES[name]} on none"
-    others = sum(scene in HELD_BACK for scene in won)
-    each = f"{TITLES[name]} on {len(won)}, {others} of them held back"
+    others, bodies = sum(scene in HELD_BACK for scene in won), len({body_of(scene) for scene in won})
+    once = f" ({bodies} {'body' if bodies == 1 else 'bodies'})" if bodies < len(won) else ""
+    each = f"{TITLES[name]} on {len(won)}{once}, {others} of them held back"
     factors = sorted(found[s].next.cpu_s / found[s].first.cpu_s for s in won if found[s].next is not None)
     if not factors:
         return f"{each}, where no other gets there"
@@ -233,6 +225,5 @@ __all__ = [
     "reached",
     "scenes_of",
     "starred",
-    "strictly",
     "wins",
 ]

@@ -57,11 +57,11 @@ def test_multipoles_are_counted_where_they_get_there():
     assert "to 0.1 % on 1 of 1, where the next costs 5 times as much" in means.multipoles(ROWS)
 
 
-def test_each_body_counts_once_and_ties_do_not():
+def test_scenes_of_one_body_are_told():
     again = [row("third at 0.01", "dem", 0.1), row("third at 0.01", "fft", 9.0)]
-    said = means.strictly(pd.DataFrame([*ROWS.to_dict("records"), *again]), "conductivity", 0.1)
-    # "half" is a tie, "third" wins twice.
-    assert "the DEM on 1, 0 of them held back; finite elements on 1, 1 of them held back; the FFT on 0" in said
+    said = means.counted(pd.DataFrame([*ROWS.to_dict("records"), *again]), "conductivity", 0.1)
+    assert "the DEM on 2 (1 body), 0 of them held back (the next costs 5 to 90 times as much)" in said
+    assert "finite elements on 1, 1 of them held back" in said
 
 
 def told(**given):
