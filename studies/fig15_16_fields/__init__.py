@@ -153,7 +153,8 @@ def _pictured(name, ratio, particles=None, seed=0, size=None, voxels=None, **_):
 def claims(df):
     """Laguerre beside the exact field, the paper's network and what it prints; FEM and FFT; orders.
 
-    Limits of Laguerre, FEM and FFT are two to three times what was found with other packings and meshes. What the paper
+    Limits of Laguerre, FEM and FFT are two to three times what was found; those of Laguerre came down to that when
+    harmonic fits had made its fluxes nearer. What the paper
     states of its network is asked of ours as it is printed.
     """
     yield from present([*_exact(df), *_laguerre(df), *_orders(df), *_printed(df), *_network(df), *_others(df)])
@@ -167,15 +168,15 @@ def _exact(df):
 
 
 def _laguerre(df):
-    for number, flux, warm, rms, most in ((NUMBERS[0], 1.0, 0.014, 1.2, 12.0), (PAPERS, 0.08, 4e-4, 0.22, 2.1)):
+    for number, flux, warm, rms, most in ((NUMBERS[0], 0.5, 0.003, 0.9, 7.0), (PAPERS, 0.035, 1.6e-4, 0.15, 2.1)):
         rows = pick(df, name="dem", particles=number)
         text = f"DEM, Laguerre, {number} particles: "
         yield text + "largest error of a flux of Table 2, %", largest(rows, error_columns("q", POINTS)), flux
         yield text + "largest error of a temperature of Table 2, K", largest(rows, error_columns("T", POINTS)), warm
         yield text + "flux away from interface and insulated faces, rms, %", largest(rows, ["flux_rms"]), rms
         yield text + "the same, largest, %", largest(rows, ["flux_max"]), most
-        # Found 1.5 and 0.32 %; fits that do not know the interface have 6.2 and 1.8 %.
-        yield text + "flux in the band beside them, rms, %", largest(rows, ["flux_rms_band"]), 2.9 * rms
+        # Fits that do not know the interface have 6.2 and 1.8 %.
+        yield text + "flux in the band beside them, rms, %", largest(rows, ["flux_rms_band"]), 2.0 * rms
     balance = pick(df, method="dem")["heat_imbalance"].abs().max(skipna=False)
     # A hundred times the tolerance of the solver.
     yield "DEM, all laws: heat in minus heat out over the heat that passes", balance, 1e-6
@@ -212,7 +213,7 @@ def _printed(df):
     # Of ours three times what was found, as elsewhere; of the network what is printed.
     for name, who, limits in (
         ("dem-calibrated", text, (1.0, 19.6)),
-        ("dem", "DEM, Laguerre, 1.5e5 particles:", (0.03, 3.6)),
+        ("dem", "DEM, Laguerre, 1.5e5 particles:", (0.012, 1.6)),
     ):
         rows = pick(df, name=name, particles=PAPERS, ratio=RATIOS[-1] if name != "dem" else None)
         if "relative_flux" not in rows:
@@ -226,7 +227,7 @@ def _printed(df):
 
 def _network(df):
     """The paper's network on the same packings."""
-    for number, flux_limit, warm_limit in ((NUMBERS[0], 0.075, 0.025), (PAPERS, 0.018, 0.008)):
+    for number, flux_limit, warm_limit in ((NUMBERS[0], 0.045, 0.025), (PAPERS, 0.012, 0.008)):
         mine, theirs = (pick(df, name=name, particles=number, seed=0) for name in ("dem", "dem-calibrated"))
         if not len(mine) or not len(theirs):
             continue
