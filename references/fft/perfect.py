@@ -16,6 +16,8 @@ from references.voxels.bodies import gathered
 
 # Steps from either voxel's centre to where a line between them leaves a body: faces are met in the first rounds.
 STEPS = 50
+# Of a line's length: steps below are none.
+SETTLED = 1e-9
 
 
 def check_perfect(scene: Scene, scheme: str, precision: str) -> None:
@@ -117,9 +119,15 @@ def _leaves(scene, shape, upper, axis, length, sign):
         return leaves
     high, low = upper[near], upper[near]
     low[:, axis] -= length
+    going = np.arange(len(near))
     for _ in range(STEPS):
-        high[:, axis] -= np.maximum(-outside(high), 0.0)
-        low[:, axis] += np.maximum(-outside(low), 0.0)
+        down, up = (np.maximum(-outside(each[going]), 0.0) for each in (high, low))
+        high[going, axis] -= down
+        low[going, axis] += up
+        # What has passed each other, or stands at the surface, goes no farther.
+        going = going[(high > low)[going, axis] & (np.maximum(down, up) > SETTLED * length)]
+        if not len(going):
+            break
     # Where both have passed each other nothing is between them.
     leaves[near] = (high > low)[:, axis] & (outside(0.5 * (high + low)) > TOUCH * max(size))
     return leaves

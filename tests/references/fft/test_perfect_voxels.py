@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from surface_bodies import brick
 
-from demheat import Box, Cylinder, Ellipsoid, Layer, Material, Scene, Sphere
+from demheat import Box, Cylinder, Ellipsoid, Layer, LevelSet, Material, Scene, Sphere, SurfaceMesh, Union
 from demheat.scene.perfect import INFINITE
 from references import fft
 from references.exact import lattice
@@ -98,10 +99,22 @@ def test_what_spans_is_infinite(scene):
         (body(Sphere(MIDDLE, 0.5 - THIN, PERFECT), **CELL), "inclusions.0."),
         (body(Ellipsoid(MIDDLE, (0.5 - THIN, 0.3, 0.3), PERFECT), **CELL), "inclusions.0."),
         (body(Box(MIDDLE, (1.0 - THIN, 0.6, 0.6), PERFECT), **CELL), "inclusions.0."),
+        (
+            body(Union([Sphere((x, 0.5, 0.5), 0.25 - THIN / 2, PERFECT) for x in (0.25, 0.75)], PERFECT), **CELL),
+            "inclusions.0.",
+        ),
+        (
+            body(
+                LevelSet(lambda at: np.abs(2 * at - 1).max(axis=1) - 1 + THIN, ((0.0,) * 3, (1.0,) * 3), PERFECT),
+                **CELL,
+            ),
+            "inclusions.0.",
+        ),
+        (body(SurfaceMesh(*brick((1.0 - THIN, 0.6, 0.6)), PERFECT), **CELL), "inclusions.0."),
         (body(Layer(0, 0.5, 0.5 + THIN, Material(1.0)), matrix=math.inf, **CELL), "matrix"),
         (body(Layer(0, 0.5, 0.5 + THIN, Material(1.0)), matrix=math.inf, **X), "matrix"),
     ],
-    ids=["sphere", "ellipsoid", "box", "matrix in a cell", "matrix between walls"],
+    ids=["sphere", "ellipsoid", "box", "union", "level set", "triangles", "matrix in a cell", "matrix between walls"],
 )
 def test_gaps_that_voxels_do_not_see_are_not_called_infinite(scene, named):
     """Each conducts so and so much: they were said to be infinite, as a body and its image are one phase."""
