@@ -35,13 +35,13 @@ def in_words(df):
     """What it is worth, in numbers."""
     every, found = asked.all_told(df), there(df)
     if not found:
-        return "of none it is known yet."
+        return "Of none it is known yet."
     closed = sum(each.method == "exact" for each in every)
     late = len(every) - closed - len(found)
     near = sum(each.off <= SAID for each in found)
     offs, factors = [each.off for each in found], [each.factor for each in found]
     return (
-        f"of {len(every)} pairs of scene and accuracy {closed} have a closed form; `effective` got there on "
+        f"Of {len(every)} pairs of scene and accuracy {closed} have a closed form; `effective` got there on "
         f"{len(found)} of the others within {asked.LONGEST_S:g} seconds, where `recommend` had said its cost within a "
         f"factor of {SAID:g} on {near}, {statistics.median(offs):.2g} in the median and {max(offs):.2g} at most; it "
         f"cost {statistics.median(factors):.2g} times the cheapest method's in the median and {max(factors):.2g} at "

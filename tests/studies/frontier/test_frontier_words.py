@@ -85,7 +85,7 @@ def test_advice_is_judged_by_what_effective_did():
     # Eight were said and two taken; another takes half a second; of three intervals one does not hold.
     assert list(claims.values()) == [4.0, 4.0, 4.0, pytest.approx(2 / 3)]
     said = advice.in_words(rows)
-    assert said.startswith("of 3 pairs of scene and accuracy 1 have a closed form; `effective` got there on 1 of the")
+    assert said.startswith("Of 3 pairs of scene and accuracy 1 have a closed form; `effective` got there on 1 of the")
     assert "a factor of 3 on 0, 4 in the median" in said and said.endswith("on 1 time was over.")
     # Rows of `effective` are no search.
     assert set(means.longest(rows)["way"]) <= set(means.WAYS)
