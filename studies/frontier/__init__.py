@@ -115,7 +115,7 @@ def of_fluxes(df):
     return found[~found.drop(columns="scene").isin(["-", "?"]).all(axis=1)]
 
 
-def in_time(df):
+def warming(df):
     """The same of temperatures while bodies warm up: the largest error over the times of the papers' figures."""
     from studies.frontier import tables
     from studies.frontier.in_time import IN_TIME

@@ -7,6 +7,8 @@ import json
 import math
 import tempfile
 import warnings
+from dataclasses import replace
+from functools import partial
 
 from demheat import budget, referee
 from demheat.declared import load
@@ -45,7 +47,8 @@ def searched(name: str, way: str, seconds: float) -> dict:
     # What is loaded is no garbage, which each run looks for before it begins.
     gc.collect()
     gc.freeze()
-    trail = search(how, lambda value, wanted: _point(how, name, truth, value, wanted), budget=seconds, judged=judged)
+    run = partial(_point, how, name, scene, truth)
+    trail = search(how, run, budget=seconds, judged=judged)
     if not trail.points:
         raise NotImplementedError(trail.ended)
     row = {"true_k": truth.conductivity, "true_off": truth.off, "true_by": truth.source}
@@ -90,10 +93,11 @@ def _solved(way, scene, value):
     return load(way.method).solve(scene, **knobs_at(way, value, scene))
 
 
-def _point(way, name, truth, value, wanted):
-    """Errors and costs at one value, a packing made on the spot."""
+def _point(way, name, scene, truth, value, wanted):
+    """Errors and costs at one value, a packing made on the spot, of a scene that nobody has asked anything yet."""
+    scene = replace(scene)
     if way.peer:
-        return _of_peer(found(way, scene_of(name), value), value, truth)
+        return _of_peer(found(way, scene, value), value, truth)
     forget()
     with (
         tempfile.TemporaryDirectory() as folder,
@@ -105,7 +109,7 @@ def _point(way, name, truth, value, wanted):
         if way.marches:
             (errors, costs, unknowns), whole = measured(_marched, way, name, value)
         else:
-            (errors, costs, unknowns), whole = measured(_asked, way, scene_of(name), truth, value, wanted)
+            (errors, costs, unknowns), whole = measured(_asked, way, scene, truth, value, wanted)
     costs = {name: [(*cost, whole["peak_mib"])] for name, cost in costs.items()}
     return Point(value, errors, costs, unknowns, walked=True)
 
