@@ -43,6 +43,7 @@ NO_ROWS = {
     "demheat/io": READ,
     "demheat/grains/contact_files.py": READ,
     "demheat/terminal/ends.py": READ,
+    "demheat/scene/told.py": READ,
     "demheat/terminal/pictures.py": DRAWN,
     "demheat/terminal/report": DRAWN,
     "references/mesh/export.py": DRAWN,
