@@ -168,7 +168,9 @@ def _costs(sizes, tried):
     there = np.max(sizes * begin / seconds[:, None], axis=0) > LEAST
 
     def residuals(powers):
-        found = sizes[:, there] @ np.exp(powers[1:])
+        # A step too far ends in infinity, and is made shorter.
+        with np.errstate(over="ignore"):
+            found = sizes[:, there] @ np.exp(powers[1:])
         return np.append(weights * (np.log(found / seconds) + powers[0] * stiff), STIFF * powers[0])
 
     found = least_squares(residuals, np.append(0.0, np.log(begin[there])), loss="soft_l1", x_scale="jac").x

@@ -105,7 +105,7 @@ def test_what_spans_is_infinite(scene):
         ),
         (
             body(
-                LevelSet(lambda at: np.abs(2 * at - 1).max(axis=1) - 1 + THIN, ((0.0,) * 3, (1.0,) * 3), PERFECT),
+                LevelSet(lambda at: np.linalg.norm(at - 0.5, axis=1) - 0.5 + THIN, ((0.0,) * 3, (1.0,) * 3), PERFECT),
                 **CELL,
             ),
             "inclusions.0.",
