@@ -21,6 +21,15 @@ from studies.frontier.cases import QUICK_SECONDS, all_cases
 CASES = list(all_cases())
 MODULES = {"ngsolve": "studies.peers.programs.ngsolve", "effective": "demheat.cheapest"}
 PAPER = {}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {"its cost over that of the cheapest method": "what was asked of it before there were any rows"}
+# Why claims on the stored rows fail.
+FAILS = {
+    "what `effective` took, factor between, largest": (
+        "unequal spheres to .1 %: the multipoles' interval was four times too wide, and they were asked again, twice; "
+        "unions to 1 %: the interval by the fewest particles was too wide, and the FFT took over"
+    ),
+}
 TIMEOUT = 900.0
 # A search repeats what decides by itself.
 REPEATS = 1
