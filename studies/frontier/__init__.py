@@ -47,9 +47,12 @@ COSTS = (
     "flux",
     "ended",
     "tried",
-    "asked_1",
-    "asked_0.1",
-    "asked_0.01",
+)
+# Of `effective` nothing but the conductivity to one per cent.
+COSTS += tuple(
+    f"asked_{target}_{field}"
+    for target in ("1", "0.1", "0.01")
+    for field in ("named", "method", "half", "error", "rounds", "why", "other")
 )
 
 

@@ -55,4 +55,4 @@ def _over(df, found):
     for each in found:
         ways = means.reached(df, each.scene, "conductivity", each.target, any_shape=False)
         if ways:
-            yield each.cpu_s / ways[0].cpu_s
+            yield each.took_s / ways[0].cpu_s

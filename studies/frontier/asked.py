@@ -5,11 +5,9 @@ Not a search but the whole promise: the tensor with an interval as narrow as ask
 
 from __future__ import annotations
 
-import json
 import math
 import tempfile
 import warnings
-from functools import cache
 from typing import NamedTuple
 
 from demheat import effective, recommend, referee
@@ -27,12 +25,19 @@ MEMORY, LONGEST_S = 8 * 2**30, 20.0
 # Wall seconds that another is given at least.
 LEAST_S = 0.05
 DIGITS = 4
+WORDS = ("named", "method", "why", "other")
 
 
 def row_of(name: str) -> dict:
-    """Columns of a row, by accuracy: JSON of `Told`'s fields."""
+    """Columns of a row, `Told`'s fields by accuracy."""
     truth = truth_of(name)
-    return {f"asked_{target:g}": json.dumps(_told(name, truth, target)) for target in ASKED}
+    every = {target: _told(name, truth, target) for target in ASKED}
+    return {column(target, key): value for target, told in every.items() for key, value in told.items()}
+
+
+def column(target: float, field: str) -> str:
+    """Name of a column."""
+    return f"asked_{target:g}_{field}"
 
 
 def warm_up(name: str) -> None:
@@ -53,49 +58,52 @@ class Told(NamedTuple):
     scene: str
     target: float
     named: str  # By `recommend`
-    guess: float
+    guess_s: float
     method: str  # That `effective` ended with; empty where it did not get there, `why` then says it
-    cpu_s: float
+    took_s: float
     half: float  # Of its interval
     error: float
     rounds: int
     why: str
-    others: dict  # Processor seconds of others that get there in the same wall time, by method
+    other: str  # That gets there at least cost of others, if any does in the same wall time
+    other_s: float
 
     @property
     def off(self) -> float:
         """Factor, 1 or more, between what was said and what it took."""
-        return max(self.guess / self.cpu_s, self.cpu_s / self.guess)
+        return max(self.guess_s / self.took_s, self.took_s / self.guess_s)
 
     @property
     def factor(self) -> float:
         """How many times as much it cost as the cheapest."""
-        return self.cpu_s / min([self.cpu_s, *self.others.values()])
+        return self.took_s / min(self.took_s, self.other_s) if self.other else 1.0
 
 
 def _told(name, truth, target):
     scene, accuracy = scene_of(name), target / 100
     said = recommend(scene, accuracy, memory=MEMORY)
-    told = {"named": said.method, "guess": _digits(said.cpu_s)}
+    told = {"named": said.method, "guess_s": _digits(said.cpu_s)}
     try:
         found = _asked(scene, accuracy, LONGEST_S)
     except (RuntimeError, TimeoutError) as error:
         return told | {"method": "", "why": " ".join(str(error).split())[:200]}
     k = _along(name, found)
+    other, other_s = ("", math.nan) if found.cut else _cheapest_other(scene, accuracy, found)
     return told | {
         "method": found.method if not found.cut else "",
-        "cpu_s": _digits(found.cost["cpu_s"]),
+        "took_s": _digits(found.cost["cpu_s"]),
         "half": _digits(100 * _half(name, found) / k),
         "error": _digits(100 * abs(referee.value_error(k, truth.conductivity))),
         "rounds": found.cost["rounds"],
         "why": found.cut,
-        "others": {} if found.cut else _others(scene, accuracy, found),
+        "other": other,
+        "other_s": _digits(other_s),
     }
 
 
-def _others(scene, accuracy, found):
-    """Processor seconds of those that get there, too, in the same wall time."""
-    costs = {}
+def _cheapest_other(scene, accuracy, found):
+    """The cheapest of those that get there, too, in the same wall time, and its processor seconds."""
+    costs = {"": math.inf}
     for method in OTHERS:
         if method == found.method:
             continue
@@ -104,8 +112,9 @@ def _others(scene, accuracy, found):
         except (RuntimeError, TimeoutError, MemoryError):
             continue
         if not other.cut:
-            costs[method] = _digits(other.cost["cpu_s"])
-    return costs
+            costs[method] = other.cost["cpu_s"]
+    best = min(costs, key=costs.get)
+    return best, costs[best]
 
 
 def _asked(scene, accuracy, seconds, **method):
@@ -135,16 +144,14 @@ def _digits(value):
 
 def all_told(df) -> list[Told]:
     """All that rows hold, in order."""
-    if f"asked_{ASKED[0]:g}" not in df:
+    if column(ASKED[0], "named") not in df:
         return []
-    rows = df[df["way"].eq(WAY) & df["scene"].isin(HELD_BACK) & df[f"asked_{ASKED[0]:g}"].notna()]
-    return [
-        _read(row["scene"], target, row[f"asked_{target:g}"]) for row in rows.to_dict("records") for target in ASKED
-    ]
+    rows = df[df["way"].eq(WAY) & df["scene"].isin(HELD_BACK) & df["status"].eq("ok")]
+    return [_read(row, target) for row in rows.to_dict("records") for target in ASKED]
 
 
-@cache
-def _read(scene, target, text):
-    blank = dict.fromkeys(("guess", "cpu_s", "half", "error"), math.nan) | {"rounds": 0, "why": "", "others": {}}
-    known = {key: value for key, value in json.loads(text).items() if value is not None}
-    return Told(scene, target, **blank | known)
+def _read(row, target):
+    known = {key: row.get(column(target, key)) for key in Told._fields[2:]}
+    # Of a word there may be none.
+    words = {key: "" if value != value else value for key, value in known.items() if key in WORDS}
+    return Told(row["scene"], target, **known | words)

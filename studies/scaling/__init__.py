@@ -181,7 +181,7 @@ def _goal(df):
     if len(many) and len(one):
         ratio = _cached(many) / _cached(one)
         yield f"DEM, {MANY} particles, packing there: CPU time for {GOAL} spheres over that for one", ratio, 3.0
-        yield f"DEM, {GOAL} spheres: error, %", largest(many, "error_percent"), 0.02
+        yield f"DEM, {GOAL} spheres: error, %", largest(many, "error_percent"), 0.015
     exact = pick(rows, name="multipole")
     if len(exact):
         yield f"Multipoles, {GOAL} spheres to {ACCURACY:g}: CPU seconds", exact["cpu_s"].iloc[0], 45.0

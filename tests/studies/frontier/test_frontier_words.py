@@ -64,18 +64,18 @@ def test_scenes_of_one_body_are_told():
     assert "finite elements on 1, 1 of them held back" in said
 
 
-def told(**given):
+def told(target, **given):
     """What `effective` did to one accuracy."""
-    usual = {"named": "dem", "guess": 1.0, "method": "dem", "cpu_s": 2.0, "half": 0.5, "error": 0.1, "rounds": 1}
-    return json.dumps(usual | {"why": "", "others": {}} | given)
+    usual = {"named": "dem", "guess_s": 1.0, "method": "dem", "took_s": 2.0, "half": 0.5, "error": 0.1, "rounds": 1}
+    usual |= {"why": float("nan"), "other": float("nan"), "other_s": float("nan")} | given
+    return {f"asked_{target}_{key}": value for key, value in usual.items()}
 
 
 ASKED = {
-    "scene": "unions",
-    "way": "effective",
-    "asked_1": told(guess=8.0, others={"fft": 0.5}),
-    "asked_0.1": told(named="exact", method="exact", guess=0.0, cpu_s=0.01),
-    "asked_0.01": told(method="", cpu_s=30.0, half=0.02, error=0.04, why="seconds = 20 are over"),
+    **{"scene": "unions", "way": "effective", "status": "ok"},
+    **told("1", guess_s=8.0, other="fft", other_s=0.5),
+    **told("0.1", named="exact", method="exact", guess_s=0.0, took_s=0.01),
+    **told("0.01", method="", took_s=30.0, half=0.02, error=0.04, why="seconds = 20 are over"),
 }
 
 
