@@ -20,6 +20,7 @@ from studies.common.slices import slice_means
 from studies.harness.cells import cell, numbers
 from studies.harness.pick import pick, present
 from studies.harness.printed import printed
+from studies.harness.tolerance import Tolerance
 
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
@@ -36,6 +37,11 @@ ACCURACY = 1e-5
 FEM_ACCURACY = 5e-7
 SIZES = (0.08e-3, 0.05e-3)
 TIMEOUT = 3600.0
+# Linear equations of a step may end a step earlier on another processor of the same name: seen are 2e-6 % of the span.
+TOLERANCES = {
+    "(worst|rms|profile_error)_.*": Tolerance(0.0, 2e-5),
+    "profile_.*": Tolerance(2e-6, 0.0),
+}
 
 
 def _cases():
