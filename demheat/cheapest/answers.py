@@ -74,11 +74,10 @@ def _known(field: Field, method: str) -> _Known:
     return _Known(k, max(error.upper - k, k - error.lower), field.mean_flux, error.flux, error.how)
 
 
-def half_of(field: Field, method: str) -> tuple[float, bool]:
-    """Half of the interval of a field's conductivity, W/(m K), and whether it is about what that is extrapolated to."""
+def half_of(field: Field, method: str) -> float:
+    """Half of the interval of a field's conductivity, W/(m K)."""
     with of_conductivity_alone():
-        found = _known(field, method)
-    return found.half, found.conductivity != field.conductivity
+        return _known(field, method).half
 
 
 def excess(found: Answer, accuracy: float) -> float:

@@ -13,15 +13,16 @@ from typing import NamedTuple
 from demheat import effective, recommend, referee
 from studies.frontier.scenes import HELD_BACK, scene_of
 from studies.frontier.truth import truth_of
+from studies.frontier.ways import ASKED, ASKED_S
 from studies.harness import methods
 from studies.harness.repeated import forget
 
-# The way that such rows have, and the per cents that are asked for.
-WAY, ASKED = "effective", (1.0, 0.1, 0.01)
+# Per cents that are asked for.
+TARGETS = (1.0, 0.1, 0.01)
 # Of which others are asked the same, within the wall time that was taken: who needs more costs more.
 OTHERS = ("multipole", "fem", "fft", "dem")
-# Bytes, of a usual machine: what is named must not change with the one that asks. Seconds after which nobody waits.
-MEMORY, LONGEST_S = 8 * 2**30, 20.0
+# Bytes, of a usual machine: what is named must not change with the one that asks.
+MEMORY = 8 * 2**30
 # Wall seconds that another is given at least.
 LEAST_S = 0.05
 DIGITS = 4
@@ -31,7 +32,7 @@ WORDS = ("named", "method", "why", "other")
 def row_of(name: str) -> dict:
     """Columns of a row, `Told`'s fields by accuracy."""
     truth = truth_of(name)
-    every = {target: _told(name, truth, target) for target in ASKED}
+    every = {target: _told(name, truth, target) for target in TARGETS}
     return {column(target, key): value for target, told in every.items() for key, value in told.items()}
 
 
@@ -49,7 +50,7 @@ def warm_up(name: str) -> None:
 
 def conductivity(name: str) -> float:
     """What no time decides: along the load, W/(m K), to the largest of the per cents."""
-    return _along(name, effective(scene_of(name), accuracy=ASKED[0] / 100, memory=MEMORY))
+    return _along(name, effective(scene_of(name), accuracy=TARGETS[0] / 100, memory=MEMORY))
 
 
 class Told(NamedTuple):
@@ -84,7 +85,7 @@ def _told(name, truth, target):
     said = recommend(scene, accuracy, memory=MEMORY)
     told = {"named": said.method, "guess_s": _digits(said.cpu_s)}
     try:
-        found = _asked(scene, accuracy, LONGEST_S)
+        found = _asked(scene, accuracy, ASKED_S)
     except (RuntimeError, TimeoutError) as error:
         return told | {"method": "", "why": " ".join(str(error).split())[:200]}
     k = _along(name, found)
@@ -144,10 +145,10 @@ def _digits(value):
 
 def all_told(df) -> list[Told]:
     """All that rows hold, in order."""
-    if column(ASKED[0], "named") not in df:
+    if column(TARGETS[0], "named") not in df:
         return []
-    rows = df[df["way"].eq(WAY) & df["scene"].isin(HELD_BACK) & df["status"].eq("ok")]
-    return [_read(row, target) for row in rows.to_dict("records") for target in ASKED]
+    rows = df[df["way"].eq(ASKED) & df["scene"].isin(HELD_BACK) & df["status"].eq("ok")]
+    return [_read(row, target) for row in rows.to_dict("records") for target in TARGETS]
 
 
 def _read(row, target):

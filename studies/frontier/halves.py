@@ -29,7 +29,7 @@ VALUES = {
     "fft": ("voxels", (24, 32, 48, 64, 96)),
 }
 MOST_S = 4.0
-COLUMNS = ("scene", "method", "value", "limit", "half")
+COLUMNS = ("scene", "method", "value", "half")
 
 
 def rows():
@@ -56,11 +56,11 @@ def _row(scene, part, method, knob, value):
         warnings.simplefilter("ignore", UserWarning)
         try:
             field = HOMES[method].solve(part, **knobs)
-            half, extrapolated = half_of(field, method)
+            half = half_of(field, method)
         except (NotImplementedError, RuntimeError, ValueError) as error:
             print(scene, method, value, " ".join(str(error).split())[:100], flush=True)
             return None
-    return scene, method, f"{value:.6g}", int(extrapolated), f"{half / field.conductivity:.4g}"
+    return scene, method, f"{value:.6g}", f"{half / field.conductivity:.4g}"
 
 
 def main():

@@ -21,6 +21,10 @@ BEGIN = 1.25
 POWERS = {"particles": 1.0, "voxels": 3.0, "parts": 3.0, "size": -3.0, "order": 2.0}
 
 
+# The way of rows that are no search: `effective` itself is asked, and seconds after which nobody waits (`asked`).
+ASKED, ASKED_S = "effective", 20.0
+
+
 class Way(NamedTuple):
     """One way; sizes are in edges of a cube as large as the box, voxels along such an edge."""
 

@@ -12,7 +12,7 @@ from method_scenes import METHODS
 from demheat import Box, Laguerre, Layer, Material, Scene, Sphere, evolve, gallery, solve
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import Particles
-from demheat.error import Estimate, Refinement, beside, by_refinement, known, missing
+from demheat.error import Estimate, Refinement, beside, by_refinement, known, missing, of_conductivity_alone
 from demheat.scene.volumes import fractions
 from references import exact, fem, fft, multipole, series
 from references.fem import estimate as of_elements
@@ -72,6 +72,23 @@ def test_intervals_are_what_is_missing_times_a_safety():
     assert left.upper - middle == pytest.approx(0.3 + 0.01 * middle, rel=1e-10)
     span = np.ptp([0.0, 1.01])  # of the points and walls; the points do not reach the ends
     assert 0.02 + 0.01 * 0.98 < left.temperature < 0.02 + 0.01 * 1.001 * span
+
+
+def test_intervals_of_the_conductivity_alone_ask_for_no_temperature():
+    """They are the same; coats, whose interval goes with the temperature, ask for it all the same."""
+
+    def refused(points):
+        raise AssertionError("a temperature was asked for")
+
+    def cold(level):
+        return SimpleNamespace(**{**vars(made(level)), "temperature_at": refused})
+
+    whole = by_refinement(made(0), coarser, RULE)
+    with of_conductivity_alone():
+        alone = by_refinement(cold(0), lambda level: iter([cold(level)]), RULE)
+    assert alone[:4] == whole[:4] and alone.runs == whole.runs and math.isnan(alone.temperature)
+    with pytest.raises(AssertionError, match="a temperature was asked for"):
+        by_refinement(cold(0), coarser, RULE)
 
 
 def test_a_coarser_run_that_is_close_by_luck_is_told_by_another():

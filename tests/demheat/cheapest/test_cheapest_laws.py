@@ -97,6 +97,16 @@ def test_what_is_needed_is_what_is_predicted(method):
     assert cost_laws.predicted(method, SCENE, finer).cpu_s >= cost_laws.predicted(method, SCENE, found).cpu_s
 
 
+@pytest.mark.parametrize("method", ["dem", "fft", "fft-links"])
+def test_what_is_needed_to_show_an_accuracy_has_an_interval_below_it(method):
+    """Half of it, in the median, by a standard deviation below; by one step coarser it is not."""
+    law, accuracy = cost_laws.laws()[method], 1e-4
+    value, m = cost_laws.needed_to_show(method, SCENE, accuracy), measures(SCENE)
+    halves = [math.exp(cost_laws.error_terms(law.knob, m, each) @ law.half_powers) for each in (value, value - 1)]
+    wanted = accuracy / law.half_within**cost_laws.LIKELY
+    assert halves[0] <= wanted * (1 + 1e-9) < halves[1]
+
+
 def test_small_spheres_are_meshed_finely_whatever_the_size():
     law, small = cost_laws.laws()["fem"], measures(gallery.sphere_in_cube(10.0, radius=0.005))
     one, other = (cost_laws.predicted("fem", small, size).error for size in (0.01, 0.02))

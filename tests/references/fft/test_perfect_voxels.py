@@ -11,6 +11,7 @@ from demheat import Box, Cylinder, Ellipsoid, Layer, LevelSet, Material, Scene, 
 from demheat.scene.perfect import INFINITE
 from references import fft
 from references.exact import lattice
+from references.fft import perfect
 
 MATRIX, MIDDLE, PERFECT = 2.0, (0.5, 0.5, 0.5), Material(math.inf)
 X, Y, CELL = {"walls": {"x-": 20.0, "x+": 30.0}}, {"walls": {"y-": 20.0, "y+": 30.0}}, {"gradient": (10.0, 0.0, 0.0)}
@@ -120,6 +121,21 @@ def test_gaps_that_voxels_do_not_see_are_not_called_infinite(scene, named):
     """Each conducts so and so much: they were said to be infinite, as a body and its image are one phase."""
     with pytest.raises(NotImplementedError, match=f"voxels do not see what parts perfect conductors, Scene.{named} "):
         fft.solve(scene, voxels=16)
+
+
+def test_lines_that_have_ended_are_walked_no_farther(monkeypatch):
+    """Of a ball nearly as wide as its cell, most within three steps where fifty were walked."""
+    asked, distance = [], Sphere.distance
+
+    def counted(self, points, **how):
+        asked.append(len(points))
+        return distance(self, points, **how)
+
+    monkeypatch.setattr(Sphere, "distance", counted)
+    ball, upper = Sphere(MIDDLE, 0.499, PERFECT), np.array([(0.03, 0.5, 0.5), (0.03, 0.45, 0.5), (0.97, 0.5, 0.5)])
+    scene = body(ball, **CELL)
+    assert perfect._leaves(scene, ball, upper, 0, 1 / 16, 1.0).tolist() == [True, True, False]
+    assert sum(asked) < 60
 
 
 def test_what_ends_before_a_wall_does_not_span():
