@@ -36,16 +36,11 @@ LEFT_OUT = {
     "ball": ("fem-bricks-time",),
     "beam": ("fem-bricks-time",),
     "gyroid": ("fft-em",),
-    # Elements around a thousand spheres take more memory than there is.
-    "1000 spheres": ("fem", "fem-p1", "fft-em", "dem-limit"),
+    # Elements around a thousand spheres take more memory than there is; laminate voxels are the FFT's own there.
+    "1000 spheres": ("fem", "fem-p1", "fft-em", "fft-laminate", "dem-limit"),
     "3000 spheres": ("fem",),
     "5000 spheres": ("fem", *RULES),
 }
-# Where the FFT chooses laminate voxels by itself, they are no way of their own.
-LAMINATE_ITSELF = (
-    *("third", "third at 0.01", "half", "thin shell", "polydisperse", "83 spheres", "1000 spheres", "ellipsoids"),
-    *("square rod", "unions", "gyroid", "unequal, f = .5", "resistance", "box of 1:1:4", "5000 spheres"),
-)
 # Of one sphere in a cube a program of others has what it is given there.
 PEERS = ("third", "third at 0.01", "third at 1000", "half", "half at 100")
 PAPER = (*PEERS, "83 spheres", "polydisperse")
@@ -80,8 +75,6 @@ def _fits(way, how, scene):
     if (how.spheres and scene not in ONLY_SPHERES) or (how.knob == "parts" and scene != "image"):
         return False
     if (how.peer and scene not in PEERS) or (way == "dem-paper" and scene not in PAPER):
-        return False
-    if way == "fft-laminate" and scene in LAMINATE_ITSELF:
         return False
     return way not in LEFT_OUT.get(scene, ()) and (way != "dem-limit" or scene in DEM_LIMIT)
 

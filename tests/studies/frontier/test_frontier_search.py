@@ -8,11 +8,10 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from references.fft.rules import automatic
 from studies.frontier import search as search_module
-from studies.frontier.cases import LAMINATE_ITSELF, all_cases, foreseen
+from studies.frontier.cases import all_cases, foreseen
 from studies.frontier.in_time import IN_TIME, knobs_in_time
-from studies.frontier.scenes import FOR_LAWS, HELD_BACK, SCENES, TUNED, scene_of
+from studies.frontier.scenes import FOR_LAWS, HELD_BACK, SCENES, TUNED
 from studies.frontier.search import Point, cheapest, reached, search
 from studies.frontier.search import foreseen as foreseen_seconds
 from studies.frontier.ways import NEAR, STEP, WAYS, between, growth, knobs_at, smooth, value_at
@@ -170,12 +169,6 @@ def test_scenes_are_enough_and_none_is_named_twice():
     # to find what is true and to draw scenes are part of these seconds.
     stored = Path(__file__).parents[3] / "results" / "frontier.csv"
     assert pd.read_csv(stored, usecols=["made_s"])["made_s"].sum() < min(4500, 60 * foreseen())
-
-
-@pytest.mark.parametrize("name", LAMINATE_ITSELF)
-def test_laminate_voxels_are_left_out_where_they_are_the_own_rule_alone(name):
-    scene = scene_of(name)
-    assert automatic("cg", scene, knobs_at(WAYS["fft"], WAYS["fft"].point, scene)["voxels"]) == "laminate"
 
 
 TUNED_NAMES = set(TUNED)
