@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 from pathlib import Path
+from string import ascii_lowercase
 
 from demheat.runtime.paths import replaced
 
@@ -19,6 +20,7 @@ WIDEST, COLOURS = 1_400, 128
 def saved(figure, path):
     """Write a figure as PATH.png and PATH.svg and return the paths of the files there are."""
     picture, vector = (Path(path).with_suffix(end) for end in (".png", ".svg"))
+    lettered(figure)
     with replaced(picture) as temporary:
         figure.savefig(temporary)
     pixels_for_many(figure)
@@ -28,6 +30,32 @@ def saved(figure, path):
     if vector.stat().st_size > LARGEST:
         vector.unlink()
     return [each for each in (picture, vector) if each.exists()]
+
+
+def lettered(figure):
+    """Put (a), (b), ... before the titles of panels, as a text that cites one of them needs; in order of drawing."""
+    from matplotlib.text import Text
+
+    panels = panels_of(figure)
+    if not 1 < len(panels) <= len(ascii_lowercase):
+        return
+    for letter, axes in zip(ascii_lowercase, panels, strict=False):
+        titles = {axes.get_title(loc=where) for where in ("left", "center", "right")} - {""}
+        said = [each for each in axes.get_children() if isinstance(each, Text) and each.get_text() in titles]
+        if said:
+            said[0].set_text(f"({letter}) {said[0].get_text()}")
+        else:
+            axes.set_title(f"({letter})", loc="left")
+
+
+def panels_of(figure):
+    """Axes that show something of their own: no bars of colour, insets, and second axes of a panel."""
+    inside = {inset for axes in figure.axes for inset in axes.child_axes}
+    found: dict = {}
+    for axes in figure.axes:
+        if axes.get_visible() and axes.get_label() != "<colorbar>" and axes not in inside:
+            found.setdefault(axes.get_subplotspec() or axes, axes)
+    return list(found.values())
 
 
 def pixels_for_many(figure):

@@ -67,3 +67,30 @@ def test_a_picture_inside_of_a_page_is_small(tmp_path, monkeypatch):
     assert head == "data:image/png;base64" and len(raw) < (tmp_path / "figure.png").stat().st_size
     with Image.open(io.BytesIO(raw)) as small, Image.open(tmp_path / "figure.png") as whole:
         assert small.width == 200 and small.height == round(whole.height * 200 / whole.width)
+
+
+def titles(figure):
+    with plt.rc_context(STYLE):
+        pictures.lettered(figure)
+    plt.close(figure)
+    return [axes.get_title(loc="left") or axes.get_title() for axes in pictures.panels_of(figure)]
+
+
+def test_panels_have_letters_in_order_and_bars_of_colour_none():
+    with plt.rc_context(STYLE):
+        figure, ((one, two), (three, four)) = plt.subplots(2, 2)
+    one.set_title("first", fontsize=7)
+    two.set_title("middle", loc="center")
+    three.twinx()
+    four.inset_axes((0.5, 0.5, 0.4, 0.4))
+    figure.colorbar(four.imshow([[0.0, 1.0]]), ax=four)
+    assert titles(figure) == ["(a) first", "(b) middle", "(c)", "(d)"]
+    size = next(each.get_fontsize() for each in one.get_children() if getattr(each, "get_text", str)() == "(a) first")
+    assert size == 7
+
+
+def test_a_single_panel_has_no_letter_nor_have_more_than_there_are():
+    assert titles(drawn(lambda axes: axes.set_title("alone"))) == ["alone"]
+    with plt.rc_context(STYLE):
+        figure, _ = plt.subplots(3, 9)
+    assert set(titles(figure)) == {""}
