@@ -121,8 +121,12 @@ def _near(surfaces, medium, walkers, rng):
     bent = np.maximum(side[:, 0] * off, -0.9 * gap)
     leave = (rng.random(count) * (2 * gap + bent) < gap + bent) & (gap > ON * radius)
     step = np.where(leave[:, None], gap[:, None] * outward + along, foot - place)
-    added, phase = _within(medium, step, gap * gap, phase), phase.copy()
-    phase[leave] = surfaces.phase(place[leave] + step[leave])
+    there = phase.copy()
+    there[leave] = surfaces.phase(place[leave] + step[leave])
+    # By a slope that is a little off one would leave into a pore.
+    leave &= medium.conductivity[there] > 0
+    step[~leave] = (foot - place)[~leave]
+    added, phase = _within(medium, step, gap * gap, phase), np.where(leave, there, phase)
     on = ~leave
     added[on] += _chosen(surfaces, medium, (foot[on], normal[on], radius[on]), phase, np.flatnonzero(on), rng)
     return added, phase

@@ -4,8 +4,8 @@ The labyrinths of three minimal surfaces, by their nodes, at fractions from .1 t
 waves, much like a Gaussian field; spheres at random places that overlap, below and above the fraction .29 at which they
 join through; checkerboards in three dimensions as images, in order and at random; a trefoil of triangles. What does not
 reach through the cell conducts without bound, too. No exact value is known of any: the DEM, the FFT and finite
-elements, are held against each other and against bounds of the fractions that they have (Hashin and Shtrikman's of the
-labyrinths, which are cubic, else those of layers). Both labyrinths of each surface are alike, so a contrast of .01 at a
+elements, are held against each other, against walkers, which have no grid (`references.walkers`), and against bounds of
+the fractions that they have (Hashin and Shtrikman's of the labyrinths, which are cubic, else those of layers). Both labyrinths of each surface are alike, so a contrast of .01 at a
 fraction is 100 at the rest, a hundredth of it. Of half a labyrinth that does not conduct a third is left, as was found
 of P and D (Torquato, Hyun and Donev 2002).
 """
@@ -17,6 +17,7 @@ import numpy as np
 from demheat import referee
 from studies.harness import methods
 from studies.harness.pick import largest, pick, present
+from studies.harness.tolerance import Tolerance
 
 LABYRINTHS = ("primitive", "diamond", "gyroid")
 FRACTIONS, HALF = (0.1, 0.3, 0.5, 0.7, 0.9), 0.5
@@ -45,6 +46,15 @@ OTHERS = (
     ("knot", BAD, None),
 )
 BOARDS, CHECKERED = ("checkerboard", "random checkerboard"), (BAD, 10.0, GOOD)
+# What walkers judge: walks, and radius of balls on surfaces in edges.
+WALKED = {
+@@
+}
+# Their time goes with the contrast, and with the surface.
+MODULES = {"walkers": "references.walkers"}
+# On another processor they go other ways: two means are 1.4 of half an interval of 2 % apart, twice in a hundred times
+# as much again, and their lag may be the next.
+TOLERANCES = {"walked_ratio": Tolerance(0.06, 0.0), "walked_half_percent": Tolerance(0.8, 0.0)}
 # Sizes of bricks, in edges.
 BRICKS = (1 / 16, 1 / 32)
 # Largest distance from elements, %, over the rows of a part. They were set before rows were seen; known were of the
@@ -108,6 +118,9 @@ def _cases():
         for contrast in CHECKERED:
             for size in BRICKS:
                 yield _case("fem-p1", part, contrast, None, size)
+    for (part, contrast, fraction), (walks, radius) in WALKED.items():
+        where = {"part": part, "contrast": contrast} | ({} if fraction is None else {"fraction": fraction})
+        yield {"name": "walkers", **where, "method": "walkers", "walks": walks, "radius": radius}
 
 
 CASES = list(_cases())
@@ -131,6 +144,8 @@ def run(name, part, contrast, method, fraction=None, **knobs):
     from studies.formless import scenes
 
     scene = scenes.made(part, contrast, fraction)
+    if name == "walkers":
+        return _walked(scene, **knobs)
     field = methods.load(method).solve(scene, **knobs)
     own = float(sum(field.fractions[1:]))
     if contrast == math.inf:
@@ -142,6 +157,19 @@ def run(name, part, contrast, method, fraction=None, **knobs):
     found = {"k_ratio": field.conductivity / methods.MATRIX, "inclusion": own}
     known = {name: field.stats.get(name) for name in ("unknowns", "iterations", "residual")}
     return found | {"lower_ratio": float(low), "upper_ratio": float(high)} | known
+
+
+def _walked(scene, walks, radius):
+    """What walkers find, and half of the interval that holds it 95 times of 100."""
+    from references import walkers
+
+    found = walkers.solve(scene, walks=walks, radius=radius * max(scene.size))
+    half = 50 * (found.upper - found.lower) / found.conductivity
+    return {
+        "walked_ratio": found.conductivity / methods.MATRIX,
+        "walked_half_percent": half,
+        "steps": found.stats["steps"],
+    }
 
 
 def claims(df):
