@@ -4,10 +4,11 @@ The labyrinths of three minimal surfaces, by their nodes, at fractions from .1 t
 waves, much like a Gaussian field; spheres at random places that overlap, below and above the fraction .29 at which they
 join through; checkerboards in three dimensions as images, in order and at random; a trefoil of triangles. What does not
 reach through the cell conducts without bound, too. No exact value is known of any: the DEM, the FFT and finite
-elements, are held against each other, against walkers, which have no grid (`references.walkers`), and against bounds of
-the fractions that they have (Hashin and Shtrikman's of the labyrinths, which are cubic, else those of layers). Both labyrinths of each surface are alike, so a contrast of .01 at a
-fraction is 100 at the rest, a hundredth of it. Of half a labyrinth that does not conduct a third is left, as was found
-of P and D (Torquato, Hyun and Donev 2002).
+elements, are held against each other and against bounds of the fractions that they have (Hashin and Shtrikman's of the
+labyrinths, which are cubic, else those of layers), half labyrinths besides against walkers, which have no grid
+(`references.walkers`). Both labyrinths of each surface are alike, so a contrast of .01 at a fraction is 100 at the
+rest, a hundredth of it. Of half a labyrinth that does not conduct a third is left, as was found of P and D (Torquato,
+Hyun and Donev 2002).
 """
 
 import math
@@ -46,11 +47,9 @@ OTHERS = (
     ("knot", BAD, None),
 )
 BOARDS, CHECKERED = ("checkerboard", "random checkerboard"), (BAD, 10.0, GOOD)
-# What walkers judge: walks, and radius of balls on surfaces in edges.
-WALKED = {
-@@
-}
-# Their time goes with the contrast, and with the surface.
+# Walkers, who have no grid, judge half labyrinths: walks, and radius of balls on surfaces in edges. What conducts a
+# hundred times better holds them too long, and points in a surface of triangles are slow to tell.
+WALKS, RADIUS = 2000, 0.03
 MODULES = {"walkers": "references.walkers"}
 # On another processor they go other ways: two means are 1.4 of half an interval of 2 % apart, twice in a hundred times
 # as much again, and their lag may be the next.
@@ -68,6 +67,7 @@ APART = {
 }
 REASONS = {
     "largest distance from elements": "set before the rows were seen; those of links are the limits of the FFT",
+    "largest distance from walkers": "set when primitive ones were known, a fifth of one",
     "contrast .01 beside 100": "set before it was seen that the meshes of both share the symmetry",
 }
 FAILS = {
@@ -118,9 +118,10 @@ def _cases():
         for contrast in CHECKERED:
             for size in BRICKS:
                 yield _case("fem-p1", part, contrast, None, size)
-    for (part, contrast, fraction), (walks, radius) in WALKED.items():
-        where = {"part": part, "contrast": contrast} | ({} if fraction is None else {"fraction": fraction})
-        yield {"name": "walkers", **where, "method": "walkers", "walks": walks, "radius": radius}
+    for part in LABYRINTHS:
+        for contrast in (0.0, BAD):
+            where = {"part": part, "contrast": contrast, "fraction": HALF}
+            yield {"name": "walkers", **where, "method": "walkers", "walks": WALKS, "radius": RADIUS}
 
 
 CASES = list(_cases())
@@ -128,9 +129,9 @@ CASES = list(_cases())
 
 def QUICK(case):
     """Half labyrinths of the primitive surface, and the knot by elements."""
-    return (case["part"] == "primitive" and case.get("fraction") == HALF and case["name"] != "dem") or (
-        case["part"] == "knot" and case["name"] == "fem"
-    )
+    return (
+        case["part"] == "primitive" and case.get("fraction") == HALF and case["name"] not in ("dem", "walkers")
+    ) or (case["part"] == "knot" and case["name"] == "fem")
 
 
 def VALUES(case):
@@ -165,11 +166,7 @@ def _walked(scene, walks, radius):
 
     found = walkers.solve(scene, walks=walks, radius=radius * max(scene.size))
     half = 50 * (found.upper - found.lower) / found.conductivity
-    return {
-        "walked_ratio": found.conductivity / methods.MATRIX,
-        "walked_half_percent": half,
-        "steps": found.stats["steps"],
-    }
+    return {"walked_ratio": found.conductivity / methods.MATRIX, "walked_half_percent": half}
 
 
 def claims(df):
@@ -186,6 +183,8 @@ def _claims(df):
             yield text, largest(pick(mine, name=name), "apart_percent"), limit
     fine = rows[rows["finer_percent"].notna()]
     yield "finite elements: largest change to coarser ones, %", largest(fine, "finer_percent"), 0.5
+    text = "half labyrinths, finite elements: largest distance from walkers, in halves of their intervals"
+    yield text, largest(_walked_apart(df), "apart_halves"), 2.0
     yield "least distance from a bound, % of it", _room(df), ">= 0"
     yield "labyrinths, finite elements: fractions off by, % of the cell", largest(_off(df), "off_percent"), 0.1
     yield "labyrinths, finite elements: contrast .01 beside 100 of the rest, %", _dual(df), 0.5
@@ -217,12 +216,24 @@ def _with_elements(df):
     return df.assign(group=group, apart_percent=apart, finer_percent=finer)
 
 
+def _walked_apart(df):
+    """Rows of walkers, with how far the finest elements are from them, in halves of their intervals, and by what."""
+    lines = []
+    for row in pick(df, name="walkers").to_dict("records"):
+        elements = pick(df, name="fem", **{key: row[key] for key in ("part", "contrast", "fraction")})
+        if len(elements):
+            off = referee.value_error(float(elements.sort_values("size")["k_ratio"].iloc[0]), row["walked_ratio"])
+            lines.append(row | {"apart_halves": 100 * off / row["walked_half_percent"], "apart_percent": 100 * off})
+    return df.iloc[:0].assign(apart_halves=[]) if not lines else type(df)(lines)
+
+
 def _none(value):
     return None if value is None or value != value else value
 
 
 def _room(df):
     """Least distance from a bound, % of the upper one, of perfect conductors the lower; negative outside of them."""
+    df = df[df["name"] != "walkers"]
     if not len(df):
         return None
     scale = df["upper_ratio"].where(df["upper_ratio"] < math.inf, df["lower_ratio"])
@@ -278,7 +289,10 @@ def _swapped(df):
 
 
 def table(df):
-    """Conductivity over the matrix's by the finest elements, the others' distance from it, %, and the bounds."""
+    """Conductivity over the matrix's by the finest elements, the others' distance from it, %, and the bounds.
+
+    Of walkers half of their interval besides.
+    """
     import pandas as pd
 
     rows, lines = _with_elements(df), []
@@ -289,6 +303,12 @@ def table(df):
         for title, names in (("DEM", ("dem",)), ("FFT", ("fft", "fft-plain", "fft-links"))):
             apart = group[group["name"].isin(names)]["apart_percent"]
             line[title] = float(apart.iloc[0]) if len(apart) else float("nan")
+        walked = _walked_apart(group)
+        for title, column in (("walkers", "apart_percent"), ("walkers +-", "walked_half_percent")):
+            # Elements are off the walkers' by what these are off the elements', turned, to first order.
+            line[title] = (
+                float((-1 if title == "walkers" else 1) * walked[column].iloc[0]) if len(walked) else float("nan")
+            )
         lines.append(line | {"at least": first["lower_ratio"], "at most": first["upper_ratio"]})
     return pd.DataFrame(lines)
 
