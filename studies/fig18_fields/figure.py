@@ -57,7 +57,7 @@ def _pictures(figure, df, network):
             error = np.abs(error_pictures(row, truth, fine=fine)[line])
             last = axis.imshow(np.clip(error, low, high), **look, norm=LogNorm(low, high), cmap="magma")
             axis.set_xlabel(f"rms {referee.rms(error):.2g} %, largest {error.max():.3g} %", fontsize=9)
-            axis.set_title(_titled(row), fontsize=9)
+            axis.set_title(_titled(row), fontsize=8)
         if others:
             figure.colorbar(last, ax=axes[line], shrink=0.75, label=ERRORS[kind])
         _dress(axes[line], pick(df, name="arrangement").iloc[0])

@@ -52,7 +52,9 @@ def _errors(axes, rows):
     axes.set(xscale="log", yscale="log", xlabel="Kapitza length over radius (leftmost: 0)")
     axes.set(ylabel="|error of the conductivity|, %", title="Sphere in a cube, contrast 10")
     if axes.get_legend_handles_labels()[0]:
-        axes.legend()
+        # Below the curves.
+        axes.set_ylim(bottom=axes.get_ylim()[0] / 300)
+        axes.legend(loc="lower left")
 
 
 def _falls(axes, rows):
