@@ -131,7 +131,7 @@ def solved(problem: Problem, system: System) -> SolvedGrid:
         if excess <= 1:
             return _solution(system, state, iterations, error, clock.cost())
         if iterations >= problem.max_iterations or not excess < before:
-            _fail(iterations, error, problem.tolerance)
+            _fail(problem, iterations, error)
         before = excess
         with clock, stage("iterations") as done:
             iterations = _iterate(problem, system, state, iterations, done)
@@ -142,10 +142,16 @@ def _error(rz, energy, system):
     return math.sqrt(max(rz, 0.0) * system.size) / float(energy) if energy > 0 else 0.0
 
 
-def _fail(iterations, error, tolerance):
+def _fail(problem, iterations, error):
+    if problem.dtype == np.float32:
+        ask = "allow more max_iterations, a larger tolerance, or use precision 'float64'"
+    elif iterations >= problem.max_iterations:
+        ask = "allow more max_iterations or a larger tolerance"
+    else:
+        ask = "rounding ends it: a larger tolerance, or inf or 0 for a conductivity so far from the others"
     raise RuntimeError(
         f"fft.solve: scheme 'cg' did not converge: {iterations} iterations, relative residual {error:.2e}, "
-        f"tolerance {tolerance:.1e}; allow more max_iterations, a larger tolerance, or use precision 'float64'"
+        f"tolerance {problem.tolerance:.1e}; {ask}"
     )
 
 

@@ -133,6 +133,16 @@ def test_what_rounding_forbids_raises(scheme):
         fft.solve(sphere_cell(30.0), tolerance=1.3e-7, max_iterations=300, **knobs)
 
 
+def test_what_did_not_converge_is_told_what_would():
+    for contrast, knobs, words in (
+        (30.0, {"max_iterations": 2}, "allow more max_iterations or"),
+        (30.0, {"max_iterations": 2, "precision": "float32"}, "or use precision 'float64'"),
+        (1e13, {}, "a larger tolerance, or inf or 0"),
+    ):
+        with pytest.raises(RuntimeError, match=words):
+            fft.solve(sphere_cell(contrast), voxels=8, **knobs)
+
+
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_the_error_follows_the_tolerance(scheme):
     solved = [fft.solve(dispersion(gradient=(1.0, 0, 0)), voxels=12, scheme=scheme, tolerance=t) for t in (1e-3, 1e-10)]
