@@ -159,15 +159,22 @@ def multipoles(df):
 def _theirs(df, target):
     """Of one accuracy."""
     every = [reached(df, scene, "conductivity", target, any_shape=False) for scene in scenes_of(df)]
-    found = [_best(ways) for ways in every if any(WAYS[each.way].spheres for each in ways)]
-    won = [each for each in found if [e.family for e in each.tied] == ["multipole"]]
-    ties = sum("multipole" in {e.family for e in each.tied} for each in found) - len(won)
-    factors = sorted(each.next.cpu_s / each.first.cpu_s for each in won if each.next is not None)
-    said = [f"to {target:g} % on {len(won)} of {len(found)}"]
-    said += [f"the next costs {_between(factors)} times as much"] if factors else []
+    every = [ways for ways in every if any(WAYS[each.way].spheres for each in ways)]
+    won, tied, lost = [], 0, []
+    for ways in every:
+        found, own = _best(ways), next(each for each in ways if WAYS[each.way].spheres)
+        if own not in found.tied:
+            lost.append(own.cpu_s / ways[0].cpu_s)
+        elif len(found.tied) > 1:
+            tied += 1
+        else:
+            won.append(found)
+    factors = [each.next.cpu_s / each.first.cpu_s for each in won if each.next is not None]
+    said = [f"the next costs {_between(sorted(factors))} times as much"] if factors else []
     said += [f"on {len(won) - len(factors)} no other gets there"] if len(factors) < len(won) else []
-    said += [f"{_ties(ties)}"] if ties else []
-    return f"{said[0]} ({'; '.join(said[1:])})" if said[1:] else said[0]
+    said += [_ties(tied)] if tied else []
+    said += [f"{_between(sorted(lost))} times the cheapest on {len(lost)}"] if lost else []
+    return f"to {target:g} % on {len(won)} of {len(every)}" + (f" ({'; '.join(said)})" if said else "")
 
 
 def beside_peers(df):

@@ -55,9 +55,10 @@ def test_what_gets_farther_at_less_cost_is_the_cheapest():
 def test_multipoles_are_counted_where_they_get_there():
     assert "to 0.1 % on 1 of 1 (the next costs 5 times as much)" in means.multipoles(ROWS)
     # A tie is no win, and where no other gets there is told.
-    more = [row("half", "multipole", 1.1, spread=0.2), row("unions", "multipole", 0.1), row("gyroid", "multipole", 1.0)]
+    more = [row("half", "multipole", 1.1, spread=0.2), row("unions", "multipole", 1.8), row("gyroid", "multipole", 1.0)]
     said = means.multipoles(pd.DataFrame([*ROWS.to_dict("records"), *more]))
-    assert "0.1 % on 3 of 4 (the next costs 5 to 9 times as much; on 1 no other gets there; a tie on 1)" in said
+    costs = "the next costs 5 times as much; on 1 no other gets there; a tie on 1; 2 times the cheapest on 1"
+    assert f"0.1 % on 2 of 4 ({costs})" in said
 
 
 def test_peers_that_tie_are_said_to():
