@@ -21,6 +21,8 @@ from demheat.scene.shapes.base import BESIDE
 SLOWEST, SMOOTH = 0.5, 2.0
 # Cosine of the angle from which on a plane and a wall are not upright, nor parallel.
 MEETS = 1e-9
+# Of angles that are told apart, in radians: they move powers by no more than the steps in which these are tried.
+DIGITS = 3
 # Powers that are tried, and least conductivity over the largest at an edge.
 TRIED, LEAST = np.arange(1, 2001) / 2000, 1e-12
 
@@ -38,16 +40,19 @@ def edge_order(scene) -> float:
 
 def _of_shapes(scene, parts, k):
     """Powers at edges of shapes."""
-    around = [found for part in parts if len(found := part.edges(scene.size))]
-    if not around:
+    edged = [(found, part.wedges(scene.size)) for part in parts if len(found := part.edges(scene.size))]
+    if not edged:
         return []
-    around, size = np.concatenate(around), np.array(scene.size)
+    (around, angles), size = map(np.concatenate, zip(*edged, strict=True)), np.array(scene.size)
     if not scene.periodic:
         # Walls are mirrors: what touches one with an edge meets its image there.
         within = size / 2 - np.abs(around - size / 2)
         around = np.where(within < 0, np.where(around < 0, -around, 2 * size - around), around)
-        around = around[np.all(within > -4 * BESIDE * size.max(), axis=(1, 2))]
-    return [power(four) for four in np.unique(k[scene.phase_at(around.reshape(-1, 3))].reshape(-1, 4), axis=0)]
+        near = np.all(within > -4 * BESIDE * size.max(), axis=(1, 2))
+        around, angles = around[near], angles[near]
+    there = k[scene.phase_at(around.reshape(-1, 3))].reshape(-1, 4)
+    found = np.unique(np.column_stack([there, angles.round(DIGITS)]), axis=0)
+    return [power(each[:4], each[4:]) for each in found]
 
 
 def _of_planes(scene, parts, k):

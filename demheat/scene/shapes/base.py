@@ -42,7 +42,8 @@ class Shape(ABC):
 
     - `cad`, for finite elements, which cut others out of a lattice; `stored`, for scene files, which hold none
       without it;
-    - `edges`, if it is not smooth: errors fall slowly beside them, which intervals must know;
+    - `edges`, if it is not smooth: errors fall slowly beside them, which intervals must know; `wedges`, if these are
+      not upright;
     - `pattern` and `facets` of the DEM, where evenly spread points are not the best there are;
     - `contains`, `ball`, `meets`, `volume_in`, `width`, `depth`, `fills_bounds` and `fills_ball`;
     - for pairs `reach`, `hull`, `planes` and `encloses`; one that is not convex says so, one whose distance is not
@@ -318,6 +319,10 @@ class Shape(ABC):
         (n, 4, 3) float array, m
         """
         return np.empty((0, 4, 3))
+
+    def wedges(self, size: Sequence[float]) -> np.ndarray:
+        """Angles of the wedges around its edges in which the points of `edges` lie, in turn, (n, 4) float array."""
+        return np.full(self.edges(size).shape[:2], 0.5 * np.pi)
 
     @property
     def faces(self) -> Sequence[Shape]:

@@ -59,7 +59,7 @@ def spread(shape, samples, areas, count: int, rng):
     share = (np.arange(count) + rng.random()) / count
     points = samples[np.searchsorted(np.cumsum(areas) / areas.sum(), share).clip(max=len(samples) - 1)]
     for _ in range(ROUNDS):
-        nearest = _nearest(points, samples)
+        nearest = nearest_of(points, samples)
         area = np.bincount(nearest, areas, count)
         sums = np.stack([np.bincount(nearest, areas * column, count) for column in samples.T], axis=1)
         points = np.where(area[:, None] > 0, sums / np.maximum(area, 1e-300)[:, None], points)
@@ -70,26 +70,31 @@ def spread(shape, samples, areas, count: int, rng):
 
 def level(shape, points, normals, room: Room):
     """Points moved inwards so that over its own part of the surface each plane holds as much as the shape."""
-    return lifted(shape, points, normals, *sampled_between(shape, points, room))
+    samples, areas = sampled_between(shape, points, room)
+    return lifted(points, normals, samples, shape.normal(samples), areas)
 
 
 def sampled_between(shape, points, room: Room):
     """Points of a surface between walls, if there are any, closer than those of a pattern, and their areas."""
-    from scipy.spatial import cKDTree
-
-    away, _ = cKDTree(points).query(points, k=2)
-    samples, areas = sampled(shape, room, float(np.median(away[:, 1])) / LIFTED)
+    samples, areas = sampled(shape, room, between(points) / LIFTED)
     if room.periodic:
         return samples, areas
     inside = np.all((samples > 0) & (samples < room.size), axis=1)
     return samples[inside], areas[inside]
 
 
-def lifted(shape, points, normals, samples, areas):
+def between(points) -> float:
+    """Median distance of points from the next one, m."""
+    from scipy.spatial import cKDTree
+
+    return float(np.median(cKDTree(points).query(points, k=2)[0][:, 1]))
+
+
+def lifted(points, normals, samples, outward, areas, nearest=None):
     """Points moved so that over the samples nearest to it each plane holds as much as the shape."""
-    nearest = _nearest(points, samples)
+    nearest = nearest_of(points, samples) if nearest is None else nearest
     there = normals[nearest]
-    cosine = np.maximum(np.einsum("ij,ij->i", there, shape.normal(samples)), 0.25)
+    cosine = np.maximum(np.einsum("ij,ij->i", there, outward), 0.25)
     height = np.einsum("ij,ij->i", points[nearest] - samples, there) / cosine
     total, weight = (np.bincount(nearest, column, len(points)) for column in (areas * height, areas))
     # What is sampled by chance only is moved as far as all are in the mean.
@@ -98,7 +103,7 @@ def lifted(shape, points, normals, samples, areas):
     return points - lift[:, None] * normals
 
 
-def _nearest(points, samples):
+def nearest_of(points, samples):
     """Number of the point nearest to each sample, (n,) int array."""
     from scipy.spatial import cKDTree
 

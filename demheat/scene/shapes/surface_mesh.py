@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
@@ -12,8 +12,10 @@ import numpy as np
 
 from demheat.scene.inputs import moderate, reals
 from demheat.scene.material import Material, check_material
-from demheat.scene.shapes.base import Shape, check_resistance
+from demheat.scene.shapes.base import BESIDE, Shape, check_resistance
 from demheat.scene.shapes.closed import closed
+from demheat.scene.shapes.patches import Patches
+from demheat.scene.shapes.patterns import BEYOND, LIFTED, SPREAD, Room, between, closer
 from demheat.scene.shapes.solid import Solid
 from demheat.scene.shapes.triangles import TURN, Triangles
 
@@ -157,6 +159,47 @@ class SurfaceMesh(Solid):
                 f"{name}: vertices from {tuple(np.round(low, 9).tolist())} to {tuple(np.round(high, 9).tolist())} m, "
                 f"the box is {longest:.6g} m wide: they seem to be in millimetres or another unit; must be in metres"
             )
+
+    @cached_property
+    def _patches(self):
+        return Patches(self._body)
+
+    @cached_property
+    def _edges(self):
+        return self._patches.edges(BESIDE * float(np.ptp(self._body.vertices, axis=0).min()))
+
+    def edges(self, size: Sequence[float]) -> np.ndarray:
+        """Points around its sharpest edges; see `Shape.edges`."""
+        return self._middle + self._edges[0]
+
+    def wedges(self, size: Sequence[float]) -> np.ndarray:
+        """Angles between the faces that meet at its edges, and on to their bisectors; see `Shape.wedges`."""
+        return self._edges[1]
+
+    def pattern(self, spacing: float, rng: np.random.Generator, room: Room) -> tuple[np.ndarray, np.ndarray]:
+        """Points spread out between sharp edges, half a spacing from them; see `Shape.pattern`."""
+        ends = self._room(room, BEYOND * spacing / SPREAD)
+        points, normals = self._patches.spread(self._surface, spacing, rng, *ends)
+        return points + self._middle, normals
+
+    def choice(self, least: float, widest: float, wanted: Callable, rng: np.random.Generator, room: Room):
+        """Points to choose from, half the least spacing off sharp edges; see `Shape.choice`."""
+        points, normals = closer(self, widest, wanted, rng, room)
+        far = ~self._patches.beside_edges(points - self._middle, 0.5 * least)
+        return points[far], normals[far]
+
+    def facets(self, points: np.ndarray, normals: np.ndarray, room: Room) -> np.ndarray:
+        """What is between sharp edges for itself: across them planes are others; see `Shape.facets`."""
+        own = points - self._middle
+        triangle = self._body.feet(own)[1]
+        moved = self._patches.facets(own, normals, triangle, between(own) / LIFTED, *self._room(room, 0.0))
+        return moved + self._middle
+
+    def _room(self, room, beyond):
+        """Ends of a box with walls, counted from the middle, and so much more; infinite if it repeats."""
+        if room.periodic:
+            return -np.inf, np.inf
+        return -beyond - self._middle, np.array(room.size) + beyond - self._middle
 
     @cached_property
     def _inner(self):

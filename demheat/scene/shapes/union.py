@@ -226,7 +226,8 @@ class Union(Solid):
         own, there, moved = self._faced(points), self._faced(samples), points.copy()
         for number in np.unique(own):
             mine, near = own == number, there == number
-            moved[mine] = lifted(self.faces[number], points[mine], normals[mine], samples[near], areas[near])
+            outward = self.faces[number].normal(samples[near])
+            moved[mine] = lifted(points[mine], normals[mine], samples[near], outward, areas[near])
         return moved
 
     def cad(self, occ, box: np.ndarray, scale: float) -> int:

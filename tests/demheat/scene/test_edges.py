@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from surface_bodies import brick, joined, ring
 
 from demheat import Material, Scene, solve
-from demheat.scene import Box, Cylinder, HalfSpace, Sphere, Union
+from demheat.scene import Box, Cylinder, HalfSpace, Sphere, SurfaceMesh, Union
 from demheat.scene.edges import edge_order, power
 from demheat.scene.shapes import Shape
 from references import fft
@@ -60,6 +61,35 @@ def test_rims_and_inclined_planes_have_edges():
     tilted = HalfSpace((0.5,) * 3, (1, 1, 0), good)
     assert_allclose(edge_order(Scene(inclusions=[tilted], **cell, **walls)), 4 / 3, atol=2 / 1000)
     assert edge_order(Scene(inclusions=[HalfSpace((0.5,) * 3, (0, 0, 1), good)], **cell, **walls)) == 2.0
+
+
+@pytest.mark.parametrize("contrast", [1e9, 10.0, 0.0])
+def test_a_mesh_knows_the_edges_of_the_box_it_is(contrast):
+    """Ridges and, of a cavity, grooves; diagonals of faces are none, nor are those of a ring of 7.5 and 15 degrees."""
+    cell = {"size": (1.0, 1.0, 1.0), "matrix": Material(1.0), "gradient": (0, 1, 0)}
+    box = Scene(inclusions=[Box((0.5,) * 3, (0.5, 0.375, 0.75), Material(contrast))], **cell)
+    for body in (brick(), joined(brick(), brick((0.2, 0.2, 0.2)))):
+        mesh = SurfaceMesh(*body, Material(contrast))
+        assert edge_order(Scene(inclusions=[mesh], **cell)) == edge_order(box)
+    assert edge_order(Scene(inclusions=[SurfaceMesh(*ring(), Material(contrast))], **cell)) == 2.0
+
+
+@pytest.mark.parametrize("contrast", [1e9, 0.0])
+def test_a_mesh_knows_its_angles(contrast):
+    """Wedges of arccos(1 / 3) in a tetrahedron, of which all but that is outside, and one of 270 degrees, a groove."""
+    cell = {"size": (1.0, 1.0, 1.0), "matrix": Material(1.0), "gradient": (0, 1, 0)}
+    corners = 0.5 + 0.2 * np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
+    four = SurfaceMesh(corners, np.array([(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)]), Material(contrast))
+    exact = math.pi / (2 * math.pi - math.acos(1 / 3))
+    assert_allclose(edge_order(Scene(inclusions=[four], **cell)), 2 * exact, atol=4 / 1000)
+    points, angles = four.edges((1.0, 1.0, 1.0)), four.wedges((1.0, 1.0, 1.0))
+    assert_allclose(angles.sum(axis=1), 2 * math.pi)
+    inside = np.stack([four.contains(each) for each in points])
+    assert_allclose((angles * inside).sum(axis=1), math.acos(1 / 3))
+    hollow = SurfaceMesh(*joined(brick(), brick((0.2, 0.2, 0.2))), Material(contrast))
+    points, angles = hollow.edges((1.0, 1.0, 1.0)), hollow.wedges((1.0, 1.0, 1.0))
+    within = (angles * np.stack([hollow.contains(each) for each in points])).sum(axis=1)
+    assert_allclose(np.unique(within.round(9)), [math.pi / 2, 3 * math.pi / 2])
 
 
 def test_boxes_that_keep_apart_or_share_a_face_are_as_all_others():
