@@ -3,11 +3,12 @@ PYTHON ?= python3
 OUT ?= out
 PY := .venv/bin/python
 OLD := .venv-oldest
-PIP := install --quiet --disable-pip-version-check
+# Bytecode is made of what is imported, and not of all that is there: half of the time.
+PIP := install --quiet --disable-pip-version-check --no-compile
 
 .PHONY: run test test-all test-slow test-twins test-oldest full docs clean
 
-run: .venv/ready
+run: .venv/studies
 	$(PY) -m studies run fig14_single_inclusion --quick --out $(OUT)
 
 full: .venv/ready
@@ -38,10 +39,16 @@ test-twins: .venv/ready
 test-oldest: $(OLD)/ready
 	$(OLD)/bin/python -m pytest -n 2 --dist worksteal
 
-.venv/ready: pyproject.toml
-	$(PYTHON) -m venv .venv
-	.venv/bin/pip $(PIP) -e '.[test]'
+# What studies need; what tests need besides.
+.venv/studies: pyproject.toml
+	test -x $(PY) || $(PYTHON) -m venv .venv
+	.venv/bin/pip $(PIP) -e '.[studies]'
 	touch $@
+
+.venv/ready: pyproject.toml
+	test -x $(PY) || $(PYTHON) -m venv .venv
+	.venv/bin/pip $(PIP) -e '.[test]'
+	touch .venv/studies $@
 
 $(OLD)/ready: pyproject.toml tests/oldest.txt
 	$(PYTHON) -m venv $(OLD)

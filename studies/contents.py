@@ -27,6 +27,7 @@ FIGURES = (
     (HADDAD, "Figs. 15 and 16, Table 2", "fig15_16_fields"),
     (HADDAD, "Fig. 17", "fig17_etc"),
     (HADDAD, "Fig. 18, Table 3", "fig18_fields"),
+    (HADDAD, "Table 3, its arrangement", "table3_search"),
     (HADDAD, "section 5 at full size", "many_inclusions"),
     (HADDAD, "zeta_2, left out as too costly", "zeta2"),
     (HADDAD, "7 % to experiment", "resistance"),

@@ -25,7 +25,7 @@ import numpy as np
 from demheat.field import Field, check_field
 from demheat.io.vtk import Blocks, put_down
 from demheat.runtime.limits import check_memory
-from demheat.runtime.paths import check_folder, checked_path, replaced
+from demheat.runtime.paths import check_target, replaced
 from demheat.scene.bodies import inside
 from demheat.scene.inputs import whole
 
@@ -50,19 +50,18 @@ def write(field: Field, path, *, cells: int = 64) -> None:
         Of a grid, along the longest side, where the field has neither mesh nor voxels of its own.
     """
     check_field(field)
-    path = check_target(path)
+    path = field_target(path)
     whole("cells", cells, "an integer >= 1", lambda v: v >= 1)
     make = WRITERS[path.suffix.lower()]
     with replaced(path) as part, part.open("xb") as stream:
         make(field, stream, cells)
 
 
-def check_target(path) -> Path:
+def field_target(path) -> Path:
     """The path of a file that a field can be written to, before anything is solved."""
-    path = checked_path(path)
+    path = check_target(path)
     if path.suffix.lower() not in WRITERS:
         raise ValueError(f"path = {str(path)!r}: the suffix must be one of {', '.join(WRITERS)}")
-    check_folder(path)
     return path
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from demheat.io.words import nearest_file
 from demheat.runtime.extras import extra
-from demheat.runtime.paths import checked_path
+from demheat.runtime.paths import checked_path, replaced
 from demheat.scene import Material, SurfaceMesh
 from demheat.scene.inputs import chosen, vector
 
@@ -63,6 +63,13 @@ def read_surface(
     except ValueError as error:
         told = str(error)
         raise ValueError(f"{path}{told.removeprefix('SurfaceMesh')}" if ": " in told else told) from None
+
+
+def write_surface(body: SurfaceMesh, path) -> None:
+    """Write the surface of a body as OBJ, in metres, to the last bit."""
+    with replaced(checked_path(path)) as part, part.open("w", encoding="utf-8", newline="\n") as stream:
+        stream.writelines("v {!r} {!r} {!r}\n".format(*corner) for corner in body.vertices.tolist())
+        stream.writelines("f {} {} {}\n".format(*corners) for corners in (body.triangles + 1).tolist())
 
 
 def _read(path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -20,25 +21,45 @@ def checked_path(path) -> Path:
     return path
 
 
-def check_folder(path: Path) -> None:
-    """Raise ValueError unless a file can be put where a path says, before there is anything to put there."""
+def check_target(path) -> Path:
+    """The path of a file that can be put where it says, before there is anything to put there; else a ValueError."""
+    path = checked_path(path)
     if not path.parent.is_dir():
         raise ValueError(f"path = {str(path)!r}: there is no folder {str(path.parent)!r}")
     if path.is_dir():
         raise ValueError(f"path = {str(path)!r}: is a folder; must be the name of a file")
-    if not os.access(path.parent, os.W_OK):
+    if not _takes_files(path.parent):
         raise ValueError(
             f"path = {str(path)!r}: must lie in a folder that can be written into, not {str(path.parent)!r}"
         )
-
-
-def output_folder(path) -> Path:
-    """A folder that files can be put into, made if it is not there."""
-    path = checked_path(path)
-    path.mkdir(parents=True, exist_ok=True)
-    if not os.access(path, os.W_OK):
-        raise ValueError(f"{path}: must be a folder that can be written into")
     return path
+
+
+def check_output(path) -> Path:
+    """The path of a folder that files can be put into, or that can be made, before there is anything to put there."""
+    path = checked_path(path)
+    there = next(each for each in (path, *path.absolute().parents) if each.exists())
+    if not there.is_dir():
+        raise ValueError(f"path = {str(path)!r}: must be a folder, and {str(there)!r} is a file")
+    if not _takes_files(there):
+        where = "a folder" if there == path else "in a folder"
+        raise ValueError(f"path = {str(path)!r}: must be {where} that can be written into, not {str(there)!r}")
+    return path
+
+
+def made_folder(path: Path) -> Path:
+    """A folder, made if it is not there."""
+    path.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def _takes_files(folder):
+    """Whether a file can be made in a folder: rights alone do not tell root, nor of a folder on a network."""
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
 
 
 @contextmanager

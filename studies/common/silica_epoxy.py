@@ -10,6 +10,9 @@ from studies.harness.methods import resolution
 RATIO = 6.0  # edge of the cube over the diameter
 GAP = 0.02  # least distance of two surfaces, in diameters, if no other is asked for
 SPREAD = 0.3  # of the radii of the unequal spheres, standard deviation over mean of the Gaussian before it is cut
+# Table 3 of the paper, in edges of the cube; all four points lie on the plane x = L/2. Temperatures of its walls, C.
+POINTS = {"A": (0.5, 0.6, 0.6), "B": (0.5, 0.02, 0.5), "C": (0.5, 0.3, 0.55), "D": (0.5, 0.82, 0.87)}
+LOW, SPAN = 25.0, 10.0
 KINDS = ("periodic", "walled", "unequal")
 STATS = (
     *("unknowns", "iterations", "residual", "truncation", "smallest_gap", "elements"),

@@ -10,13 +10,11 @@ from demheat.terminal.slices import filled, plane
 from studies.common import silica_epoxy
 from studies.common.field_errors import mean_diameter
 from studies.common.pictures import packed
+from studies.common.silica_epoxy import LOW, POINTS, SPAN
 from studies.harness import methods
 from studies.harness.cells import cell
 from studies.harness.cost import measured
 
-# Table 3 of the paper, in edges of the cube; all four lie on the plane x = L/2.
-POINTS = {"A": (0.5, 0.6, 0.6), "B": (0.5, 0.02, 0.5), "C": (0.5, 0.3, 0.55), "D": (0.5, 0.82, 0.87)}
-LOW, SPAN = 25.0, 10.0
 GRID = 51
 # Pixels of what is drawn, and steps to which it is kept: of the temperature in % of the span, of the flux in % of the
 # mean flux.

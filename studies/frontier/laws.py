@@ -112,7 +112,8 @@ def _tried(df, method, way):
         measures = _law_of(method, row["scene"])[1]
         unit = measures.edge if WAYS[way].knob == "size" else 1.0
         coarsest = COARSEST.get(WAYS[way].knob, 0.0)
-        peaks = {told[0]: told[3] for told in json.loads(row["conductivity"]).values() if isinstance(told, list)}
+        every = json.loads(row["conductivity"]).values()
+        peaks = {told[0]: told[3] for told in every if isinstance(told, list) and told[3] is not None}
         for value, _, _, found, *_ in json.loads(row["trail"]):
             if found and found[0] is not None and value >= coarsest:
                 peak = peaks.get(value, math.nan) * 2**20

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from functools import partial
 from typing import NamedTuple
 
 from studies.frontier.in_time import IN_TIME
@@ -11,6 +12,10 @@ from studies.frontier.scenes import HELD_BACK, SCENES, STEADY, TUNED
 from studies.frontier.search import TARGETS
 from studies.frontier.ways import NEAR, WAYS
 
+# Accuracies that multipoles are counted at, %.
+MULTIPOLES = (1.0, 0.1, 0.01)
+# Scatter of what ran once: of what ran three times nine of ten scatter by less.
+ALONE = 0.26
 # Of a row that is there, by what is compared; an extrapolated conductivity is a conductivity.
 COLUMNS = {"conductivity": ("conductivity", "extrapolated"), "temperature": ("temperature",), "flux": ("flux",)}
 
@@ -77,14 +82,16 @@ def _cheapest(row, column, target):
     if not there:
         return None
     value, cpu_s, _, _, error, spread, _ = min(there, key=lambda each: each[1])
-    return Reached(row["way"], column == "extrapolated", cpu_s, spread or 0.0, value, error)
+    return Reached(row["way"], column == "extrapolated", cpu_s, ALONE if spread is None else spread, value, error)
 
 
 def best(df, scene, quantity, target, *, any_shape=True):
     """Who is the cheapest; None where nobody gets there."""
     ways = reached(df, scene, quantity, target, any_shape=any_shape)
-    if not ways:
-        return None
+    return _best(ways) if ways else None
+
+
+def _best(ways):
     tied = tuple(each for each in _by_family(ways) if alike(ways[0], each))
     names = {each.family for each in tied}
     others = [each for each in ways if each.family not in names]
@@ -145,28 +152,46 @@ def in_words(df, quantity, target):
 
 def multipoles(df):
     """On how many scenes of spheres alone multipoles cost least, by accuracy, and how much dearer the next is."""
-    parts = []
-    for target in (1.0, 0.1, 0.01):
-        every = [reached(df, scene, "conductivity", target, any_shape=False) for scene in scenes_of(df)]
-        every = [ways for ways in every if any(WAYS[each.way].spheres for each in ways)]
-        won = [ways for ways in every if WAYS[ways[0].way].spheres]
-        factors = sorted(ways[1].cpu_s / ways[0].cpu_s for ways in won if len(ways) > 1)
-        said = f", where the next costs {_between(factors)} times as much" if factors else ""
-        parts.append(f"to {target:g} % on {len(won)} of {len(every)}{said}")
-    return f"Of scenes of spheres on which they get there, they cost least {'; '.join(parts)}."
+    parts = "; ".join(map(partial(_theirs, df), MULTIPOLES))
+    return f"Of scenes of spheres on which they get there, they cost least {parts}."
+
+
+def _theirs(df, target):
+    """Of one accuracy."""
+    every = [reached(df, scene, "conductivity", target, any_shape=False) for scene in scenes_of(df)]
+    every = [ways for ways in every if any(WAYS[each.way].spheres for each in ways)]
+    won, tied, lost = [], 0, []
+    for ways in every:
+        found, own = _best(ways), next(each for each in ways if WAYS[each.way].spheres)
+        if own not in found.tied:
+            lost.append(own.cpu_s / ways[0].cpu_s)
+        elif len(found.tied) > 1:
+            tied += 1
+        else:
+            won.append(found)
+    factors = [each.next.cpu_s / each.first.cpu_s for each in won if each.next is not None]
+    said = [f"the next costs {_between(sorted(factors))} times as much"] if factors else []
+    said += [f"on {len(won) - len(factors)} no other gets there"] if len(factors) < len(won) else []
+    said += [_ties(tied)] if tied else []
+    said += [f"{_between(sorted(lost))} times the cheapest on {len(lost)}"] if lost else []
+    return f"to {target:g} % on {len(won)} of {len(every)}" + (f" ({'; '.join(said)})" if said else "")
 
 
 def beside_peers(df):
-    """Where a program of others gets to an accuracy at less cost than any of ours for any shape."""
-    parts = []
-    for scene in scenes_of(df):
-        for target in TARGETS:
-            theirs = reached(df, scene, "conductivity", target, peers=True)
-            ours = reached(df, scene, "conductivity", target)
-            if theirs and not (ours and ours[0].cpu_s <= theirs[0].cpu_s):
-                own = f"{ours[0].title} in {ours[0].cpu_s:.2g}" if ours else "none of ours within its search"
-                parts.append(f"{theirs[0].title} to {target:g} % of {scene} in {theirs[0].cpu_s:.2g} s ({own})")
-    return f"At less cost than ours get there: {'; '.join(parts)}." if parts else "Nowhere at less cost than ours."
+    """Where a program of others gets to an accuracy at less cost than any of ours for any shape, or at the same."""
+    said = "; ".join(filter(None, (_of_peers(df, scene, target) for scene in scenes_of(df) for target in TARGETS)))
+    return f"At less cost than ours, or in a tie, get there: {said}." if said else "Nowhere at less cost than ours."
+
+
+def _of_peers(df, scene, target):
+    """The cheapest of theirs beside the cheapest of ours; nothing where ours costs less."""
+    theirs = reached(df, scene, "conductivity", target, peers=True)[:1]
+    ours = reached(df, scene, "conductivity", target)[:1]
+    if not theirs or (ours and ours[0].cpu_s < theirs[0].cpu_s and not alike(ours[0], theirs[0])):
+        return ""
+    own = f"{ours[0].title} in {ours[0].cpu_s:.2g}" if ours else "none of ours within its search"
+    tie = ", a tie" if ours and alike(*sorted((ours[0], theirs[0]), key=lambda each: each.cpu_s)) else ""
+    return f"{theirs[0].title} to {target:g} % of {scene} in {theirs[0].cpu_s:.2g} s ({own}{tie})"
 
 
 TITLES = {"dem": "the DEM", "fem": "finite elements", "fft": "the FFT"}
@@ -179,7 +204,7 @@ def counted(df, quantity, target):
     found = {scene: each for scene, each in every.items() if each is not None}
     parts = [_alone(name, found) for name in TITLES]
     ties = [scene for scene, each in found.items() if len(each.tied) > 1]
-    parts.append(f"a tie on {len(ties)}" if ties else "")
+    parts.append(_ties(len(ties)) if ties else "")
     parts.append(f"on {len(every) - len(found)} none gets there" if len(found) < len(every) else "")
     head = f"To {target:g} % of the {quantity}, of {len(scenes)} scenes where it can be judged"
     return f"{head}: {'; '.join(filter(None, parts))}."
@@ -208,6 +233,10 @@ def _alone(name, found):
 def _between(factors):
     low, high = f"{factors[0]:.2g}", f"{factors[-1]:.2g}"
     return low if low == high else f"{low} to {high}"
+
+
+def _ties(number):
+    return f"a tie on {number}"
 
 
 def _none(number):

@@ -188,8 +188,8 @@ def _found(points, quantity, judged):
             point = points[place]
             runs = point.costs[quantity]
             wall, mib = sorted(each[1] for each in runs)[len(runs) // 2], max(each[2] for each in runs)
-            told = (point.value, point.cost(quantity), wall, mib, point.errors[quantity], point.spread(quantity))
-            found[f"{target:g}"] = [*map(_digits, told), len(runs)]
+            told = (point.cost(quantity), wall, mib, point.errors[quantity], point.spread(quantity))
+            found[f"{target:g}"] = [point.value, *map(_digits, told), len(runs)]
         else:
             ahead = foreseen(points, quantity, target)
             told = f"foreseen {ahead:.2g}" if ahead <= MOST_S else "not within"
@@ -207,7 +207,7 @@ def _told(points):
             else None
             for each in QUANTITIES
         ]
-        rows.append([_digits(point.value), point.unknowns, int(point.walked), *parts])
+        rows.append([point.value, point.unknowns, int(point.walked), *parts])
     return json.dumps(rows, separators=(",", ":"))
 
 

@@ -1,7 +1,7 @@
 """One way's cheapest values of its knob for each accuracy: walked up, halved between neighbours, and run again.
 
 A value *reaches* a target if its error is within it, and so are those of all finer ones tried, two steps of the walk at
-least: a change of sign wins nothing.
+least: an error that crosses zero wins nothing by it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ TARGETS = (3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 0.003)  # per cent
 QUANTITIES = ("conductivity", "extrapolated", "temperature", "flux")
 # Processor seconds and MiB beyond which nobody waits.
 MOST_S, MOST_MIB = 120.0, 8192.0
-# Steps of the walk beyond a value that must be within the target, too.
+# Steps of the walk beyond a value that must be there, at least, and be within the target as all that is finer must.
 FINER = 2
 # Runs at values that decide.
 RUNS = 3
@@ -139,17 +139,16 @@ def _sought(trail, judged):
 
 
 def reached(points, quantity, target):
-    """Place of the first point that is within a target with all up to the second finer step of the walk, or None."""
+    """Place of the first point that is within a target with all finer ones, two steps of the walk at least, or None."""
     return next(reaching(points, quantity, target), None)
 
 
 def reaching(points, quantity, target):
     """Places of all such points: a finer one may cost less."""
-    within = [point.error_of(quantity) <= target for point in points]
-    for place in range(len(points)):
-        finer = [number for number in range(place + 1, len(points)) if points[number].walked][:FINER]
-        if len(finer) == FINER and all(within[place : finer[-1] + 1]):
-            yield place
+    missed = [place for place, point in enumerate(points) if not point.error_of(quantity) <= target]
+    walked = [place for place, point in enumerate(points) if point.walked]
+    if len(walked) > FINER:
+        yield from range(missed[-1] + 1 if missed else 0, walked[-FINER])
 
 
 def foreseen(points, quantity, target):

@@ -10,8 +10,8 @@ from typing import NamedTuple
 STEP, NEAR = 1.5, 1.2
 # Voxels along the longest side: halves and quarters of them are whole, and transforms of their lengths are fast.
 PRIMES, MULTIPLE = (2, 3, 5, 7), 4
-# Beyond these nothing is tried, whatever the budget.
-MOST_VOXELS, MOST_DEGREE = 640, 60
+# Parts of an image's voxels along each edge, before whole ones.
+COARSENED = (0.25, 0.5)
 
 
 # Particles to begin with, as a power of the number of bodies: 250 of 83, 42 000 of 5000.
@@ -58,9 +58,9 @@ WAYS = {
     "fft-laminate": Way("FFT, laminate", "fft", "fft", {"rule": "laminate"}, "voxels", 8, 24),
     "fft-links": Way("FFT, links", "fft-links", "fft", {"rule": "links"}, "voxels", 8, 24),
     "fft-em": Way("FFT, Eyre-Milton", "fft-em", "fft", {"scheme": "eyre-milton", "rule": "laminate"}, "voxels", 8, 24),
-    # An image's own voxels, or each of them split into so many along each edge.
-    "fft-image": Way("FFT", "fft", "fft", {}, "parts", 1, 1, own=True),
-    "fft-image-loose": Way("FFT, tolerance 1e-3", "fft", "fft", {"tolerance": 1e-3}, "parts", 1, 1),
+    # An image's own voxels, each of them split into so many along each edge, or so many of them made one.
+    "fft-image": Way("FFT", "fft", "fft", {}, "parts", 0.25, 1, own=True),
+    "fft-image-loose": Way("FFT, tolerance 1e-3", "fft", "fft", {"tolerance": 1e-3}, "parts", 0.25, 1),
     "multipole": Way("multipoles", "multipole", "multipole", {}, "order", 1, 3, own=True, spheres=True),
     # Through time, steps as fine as elements ask for, or as the methods have them by themselves.
     "dem-time": Way("DEM", "dem", "dem", {}, "particles", 250, 2000, marches=True),
@@ -87,7 +87,7 @@ def value_at(way: Way, number: float) -> float | int:
     if way.knob == "size":
         return way.first / STEP ** (number / 3)
     if way.knob == "parts":
-        return 1 + round(number)
+        return COARSENED[number] if number < len(COARSENED) else number - len(COARSENED) + 1
     if way.knob == "order":
         # Amplitudes go with the square of the degree, their equations with that squared, or less.
         return max(round(way.first * STEP ** (number / 3)), math.ceil(way.first + number / 2))
@@ -128,7 +128,7 @@ def knobs_at(way: Way, value, scene) -> dict:
     if way.knob == "size":
         return {**way.knobs, "size": value * edge}
     if way.knob == "parts":
-        return {**way.knobs, "voxels": tuple(n * value for n in scene.image.shape)}
+        return {**way.knobs, "voxels": tuple(max(1, round(n * value)) for n in scene.image.shape)}
     if way.knob == "voxels":
         return {**way.knobs, "voxels": [max(1, round(side * value / edge)) for side in scene.size]}
     more = {"seed": 0, "allow_few": True} if way.knob == "particles" else {}

@@ -30,7 +30,7 @@ STYLE = {
     "lines.markersize": 6,
 }
 
-# One method looks the same everywhere: its name -> label, colour, marker, line.
+# Names of colours in a method's own `look`.
 COLOURS = {
     "blue": BLUE,
     "orange": ORANGE,
@@ -41,6 +41,7 @@ COLOURS = {
     "black": BLACK,
     "grey": GREY,
 }
+# One method looks the same everywhere: its name -> label, colour, marker, line.
 LOOK = {
     name: (method.label, COLOURS.get(method.look[0], method.look[0]), *method.look[1:])
     for name, method in methods.all_methods().items()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import re
 from pathlib import Path
 from string import ascii_lowercase
 
@@ -13,6 +14,8 @@ from demheat.runtime.paths import replaced
 MANY = 2_000
 # A larger vector copy, bytes, is not kept: the PNG says as much.
 LARGEST = 2**20
+# Powers in plain words, and digits and signs as they stand raised.
+POWER, RAISED = re.compile(r"\^(-?\d+)"), str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Width, pixels, and colours of a picture inside of a page: nobody needs more on a screen.
 WIDEST, COLOURS = 1_400, 128
 
@@ -21,6 +24,7 @@ def saved(figure, path):
     """Write a figure as PATH.png and PATH.svg and return the paths of the files there are."""
     picture, vector = (Path(path).with_suffix(end) for end in (".png", ".svg"))
     lettered(figure)
+    raised(figure)
     with replaced(picture) as temporary:
         figure.savefig(temporary)
     pixels_for_many(figure)
@@ -46,6 +50,15 @@ def lettered(figure):
             said[0].set_text(f"({letter}) {said[0].get_text()}")
         else:
             axes.set_title(f"({letter})", loc="left")
+
+
+def raised(figure):
+    """Set powers such as 128^3 as superscripts, wherever no formula is."""
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        if "$" not in text.get_text():
+            text.set_text(POWER.sub(lambda found: found[1].translate(RAISED), text.get_text()))
 
 
 def panels_of(figure):

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from dataclasses import fields
 
 import numpy as np
 
 from demheat.io.scenes.scene_table import AXES, LOADS, SHAPES, SOURCES
+from demheat.io.surfaces import write_surface
 from demheat.runtime.paths import checked_path, replaced
-from demheat.scene import Scene, check_scene
+from demheat.scene import Scene, SurfaceMesh, check_scene
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -17,7 +19,8 @@ BARE = re.compile(r"[A-Za-z0-9_-]+")
 def write(scene: Scene, path) -> None:
     """Write a scene as a TOML file, in SI; an interrupted write leaves no file, and an old one as it was.
 
-    The labels of an image go into a file of the same name that ends in .npy, beside it.
+    The labels of an image go into a file of the same name that ends in .npy, beside it; the triangles of surface meshes
+    into files that end in -0.obj, -1.obj, ..., the numbers of the inclusions.
 
     Parameters
     ----------
@@ -45,25 +48,27 @@ def write(scene: Scene, path) -> None:
     """
     path = checked_path(path)
     check_scene(scene)
-    image = None if scene.image is None else path.with_suffix(".npy")
-    text = text_of_scene(scene, image_file=image and image.name)
-    if image is not None:
-        with replaced(image) as part:
+    text = text_of_scene(scene, stem=path.stem)
+    if scene.image is not None:
+        with replaced(path.with_suffix(".npy")) as part:
             np.save(part, scene.image.labels)
+    for number, shape in enumerate(scene.inclusions):
+        if isinstance(shape, SurfaceMesh):
+            write_surface(shape, path.with_name(_surface_file(path.stem, number)))
     with replaced(path) as part:
         part.write_text(text, encoding="utf-8", newline="\n")
 
 
-def text_of_scene(scene: Scene, *, image_file: str | None = None) -> str:
-    """Text of the file of a scene."""
+def text_of_scene(scene: Scene, *, stem: str | None = None) -> str:
+    """Text of the file of a scene; files beside it begin with `stem`, without which what they hold is a digest."""
     check_scene(scene)
     names = _names(scene)
     blocks = [_head(scene, names)]
     if scene.image is not None:
-        blocks += _image(scene.image, image_file)
+        blocks += _image(scene.image, stem)
     else:
         blocks += [_block(f"[materials.{name}]", _material(material)) for material, name in names.items()]
-    blocks += [_block("[[inclusions]]", _inclusion(k, shape, names)) for k, shape in enumerate(scene.inclusions)]
+    blocks += [_block("[[inclusions]]", _inclusion(k, shape, names, stem)) for k, shape in enumerate(scene.inclusions)]
     if scene.walls:
         loads = {name: _load(scene, name, load) for name, load in scene.walls.items()}
         blocks.append(_block("[walls]", loads))
@@ -71,9 +76,9 @@ def text_of_scene(scene: Scene, *, image_file: str | None = None) -> str:
     return "\n".join(blocks)
 
 
-def _image(image, file):
+def _image(image, stem):
     """Blocks of an image and of the materials of its labels."""
-    where = {"digest": image.digest} if file is None else {"file": file}
+    where = {"digest": image.digest} if stem is None else {"file": f"{stem}.npy"}
     blocks = [_block("[image]", where | {"voxel": image.voxel})]
     return blocks + [_block(f"[materials.{label}]", _plain(each)) for label, each in image.materials.items()]
 
@@ -109,14 +114,28 @@ def _material(material):
     return _plain(material, dependence=material.dependence and material.dependence.points)
 
 
-def _inclusion(number, shape, names):
+def _inclusion(number, shape, names, stem=None):
+    own = {"material": names[shape.material], "resistance": shape.resistance or None}
+    if isinstance(shape, SurfaceMesh):
+        where = {"digest": _digest(shape)} if stem is None else {"file": _surface_file(stem, number)}
+        return {name: value for name, value in ({"shape": shape.kind} | where | own).items() if value is not None}
     if SHAPES.get(shape.kind) is not type(shape):
-        raise ValueError(f"Scene.inclusions[{number}] = {shape!r}: must be one of {', '.join(SHAPES)} in a file")
-    changed = _axis(shape) | {"material": names[shape.material], "resistance": shape.resistance or None}
+        known = ", ".join([*SHAPES, SurfaceMesh.kind])
+        raise ValueError(f"Scene.inclusions[{number}] = {shape!r}: must be one of {known} in a file")
+    changed = _axis(shape) | own
     if "members" in shape.stored.values():
         # Of its material, without resistances: neither stands there again.
         changed["shapes"] = tuple(_inclusion(number, each, {each.material: None}) for each in shape.shapes)
     return {"shape": shape.kind, **_plain(shape, **changed)}
+
+
+def _surface_file(stem, number):
+    return f"{stem}-{number}.obj"
+
+
+def _digest(mesh):
+    """What tells one surface from another."""
+    return hashlib.sha256(mesh.vertices.tobytes() + mesh.triangles.tobytes()).hexdigest()
 
 
 def _source(source):

@@ -16,14 +16,14 @@ import numpy as np
 from demheat.declared import all_methods
 from demheat.io.scenes.write import text_of_scene
 from demheat.runtime.deadline import budget
-from demheat.runtime.paths import output_folder, replaced
+from demheat.runtime.paths import check_output, made_folder, replaced
 from demheat.runtime.rows import each_kept
 from demheat.scene.inputs import one_line
 from demheat.terminal.commands import rows
 from demheat.terminal.commands.answers import answered
 from demheat.terminal.commands.bounds import bounds_of
 from demheat.terminal.commands.knobs import Asked, asked
-from demheat.terminal.commands.words import aligned, names, scene_line, spread
+from demheat.terminal.commands.words import aligned, names, scene_line, spread, typed
 from demheat.terminal.slices import on_plane
 
 OUT = "demheat-out"
@@ -39,7 +39,7 @@ def run(file, options) -> int:
     """Compare, print and store; the exit status."""
     chosen = names(options.methods) or (usual(everything=True) if options.all else None)
     wanted = asked(file, chosen, options.knob, default=usual())
-    path = output_folder(options.out or OUT) / f"{file.path.stem}.csv"
+    path = typed("--out", options.out or OUT, check_output) / f"{file.path.stem}.csv"
     print(f"{file.path}: {scene_line(file.scene)}", flush=True)
     how = {"interval": not options.no_interval, "force": options.force, "seconds": options.seconds}
     made = compared(file.scene, wanted, path, **how)
@@ -87,6 +87,7 @@ def _made(scene, each, key, path, *, interval, limit):
     print(f"{each.title} ...", file=sys.stderr, flush=True)
     with limit():
         answer = answered(scene, each, interval=interval)
+    made_folder(path.parent)
     if answer.field is not None:
         _keep_slice(answer.field, path, text_of_scene(scene), again=each.method.role == "witness")
     return rows.row_of(each, answer, key), not answer.cut

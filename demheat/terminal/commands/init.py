@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from demheat.runtime.paths import check_folder, checked_path, replaced
+from demheat.runtime.paths import check_target, replaced
 
 USUAL = "scene.toml"
 TEXT = """\
@@ -55,8 +55,7 @@ voxels = 32
 
 def run(options) -> int:
     """Write the scene; the exit status."""
-    path = checked_path(options.scene)
-    check_folder(path)
+    path = check_target(options.scene)
     if path.exists():
         raise ValueError(f"{path}: is there already; must be another name, or be moved away")
     with replaced(path) as part:

@@ -11,10 +11,10 @@ import numpy as np
 from demheat import version
 from demheat.io.answers import read_answers
 from demheat.io.words import nearest
-from demheat.runtime.paths import replaced
+from demheat.runtime.paths import check_output, made_folder, replaced
 from demheat.terminal.commands.board import page
 from demheat.terminal.commands.scores import Score, scores_of, short, standings
-from demheat.terminal.commands.words import aligned
+from demheat.terminal.commands.words import aligned, typed
 
 OUT = "demheat-out"
 # To which programs are compared by what they cost, if nothing else is said.
@@ -28,6 +28,7 @@ def run(options) -> int:
     accuracy = ACCURACY if options.accuracy is None else options.accuracy
     if not 0 < accuracy < 1:
         raise ValueError(f"--accuracy {accuracy:g}: must be a part, above 0 and below 1")
+    folder = typed("--out", options.out or OUT, check_output)
     files = [read_answers(path) for path in options.files]
     names = [each.program for each in files]
     if len(set(names)) < len(names):
@@ -40,9 +41,7 @@ def run(options) -> int:
         print(table(own) + "\n")
     if len(files) > 1:
         print(leaders(scores, accuracy) + "\n")
-    folder = Path(options.out or OUT)
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / (f"{files[0].path.stem}.html" if len(files) == 1 else "leaderboard.html")
+    path = made_folder(folder) / (f"{files[0].path.stem}.html" if len(files) == 1 else "leaderboard.html")
     with replaced(path) as part:
         part.write_text(page(files, scores, accuracy), encoding="utf-8")
     print(f"page {path}")

@@ -6,13 +6,13 @@ import sys
 import time
 
 from demheat.runtime.deadline import budget
-from demheat.runtime.paths import check_folder, checked_path, replaced
+from demheat.runtime.paths import check_target, replaced
 from demheat.terminal import pictures
 from demheat.terminal.commands.answers import Answer, answered
 from demheat.terminal.commands.bounds import bounds_of
 from demheat.terminal.commands.compare import usual
 from demheat.terminal.commands.knobs import asked
-from demheat.terminal.commands.words import assumed, names, scene_line, spread
+from demheat.terminal.commands.words import assumed, names, scene_line, spread, typed
 from demheat.terminal.report import Content, kinds_of, page, values_of
 
 HEAD = ("method", "W/(m K)", "expected from", "to", "by", "wall s", "CPU s", "unknowns")
@@ -20,8 +20,7 @@ HEAD = ("method", "W/(m K)", "expected from", "to", "by", "wall s", "CPU s", "un
 
 def run(file, options) -> int:
     """Solve and write the page; the exit status."""
-    path = checked_path(options.out or f"{file.path.stem}.html")
-    check_folder(path)
+    path = typed("--out", options.out or f"{file.path.stem}.html", check_target)
     wanted = asked(file, names(options.methods), options.knob, default=usual())
     found, begun = [], time.monotonic()
     for each in wanted:

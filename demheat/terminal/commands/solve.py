@@ -5,12 +5,12 @@ from __future__ import annotations
 import sys
 import time
 
-from demheat.io.fields import check_target
+from demheat.io.fields import field_target
 from demheat.runtime.deadline import budget
-from demheat.runtime.paths import output_folder, replaced
+from demheat.runtime.paths import check_output, made_folder, replaced
 from demheat.terminal.commands.answers import answered
 from demheat.terminal.commands.knobs import asked
-from demheat.terminal.commands.words import costs, interval, names, scene_line
+from demheat.terminal.commands.words import costs, interval, names, scene_line, typed
 
 
 def run(file, options) -> int:
@@ -21,8 +21,8 @@ def run(file, options) -> int:
     for each in wanted if options.write else ():
         if each.method.call == "estimate":
             raise NotImplementedError(f"--write {options.write}: {each.method.name} is a formula and has no field")
-        check_target(options.write)
-    folder = output_folder(options.out) if options.out else None
+        typed("--write", options.write, field_target)
+    folder = typed("--out", options.out, check_output) if options.out else None
     print(f"{file.path}: {scene_line(file.scene)}")
     worst, begun = 0, time.monotonic()
     for each in wanted:
@@ -52,7 +52,7 @@ def _shown(each, found):
 
 
 def _stored(folder, name, field):
-    path = folder / f"{name}.npz"
+    path = made_folder(folder) / f"{name}.npz"
     field.write(path)
     print(f"  written       {path}")
     with replaced(path.with_suffix(".png")) as part:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import sys
 
-from demheat.runtime.paths import output_folder, replaced
+from demheat.runtime.paths import check_output, made_folder, replaced
 from demheat.terminal.commands.answers import answered
 from demheat.terminal.commands.compare import OUT
 from demheat.terminal.commands.knobs import asked
-from demheat.terminal.commands.words import names
+from demheat.terminal.commands.words import names, typed
 
 
 def run(file, options) -> int:
     """Draw; the exit status."""
     # Methods of the file are solved only if they are named: a picture of the scene costs nothing.
     wanted = asked(file, names(options.methods), options.knob, default=()) if options.methods else []
-    folder = output_folder(options.out or OUT)
+    folder = typed("--out", options.out or OUT, check_output)
     _saved(file.scene.plot(), folder / f"{file.path.stem}-scene.png")
     worst = 0
     for each in wanted:
@@ -30,6 +30,7 @@ def run(file, options) -> int:
 
 
 def _saved(figure, path):
+    made_folder(path.parent)
     with replaced(path) as part:
         figure.savefig(part, dpi=120)
     print(f"picture {path}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from pathlib import Path
 
 LENGTHS = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"))
 
@@ -11,6 +12,14 @@ LENGTHS = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"))
 def names(words) -> list[str] | None:
     """Names of methods from options, which may hold several with commas; None if there is none."""
     return [name.strip() for word in words for name in word.split(",")] if words else None
+
+
+def typed(option: str, value, check):
+    """What a check of a path makes of an option; its error names the option as it was typed."""
+    try:
+        return check(value)
+    except ValueError as error:
+        raise ValueError(f"{option} {value}: {str(error).removeprefix(f'path = {str(Path(value))!r}: ')}") from None
 
 
 def scene_line(scene) -> str:

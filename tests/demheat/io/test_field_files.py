@@ -141,7 +141,7 @@ def items_of(path):
 
 
 def test_a_folder_that_cannot_be_written_into_is_named_with_the_file(field, tmp_path, monkeypatch):
-    monkeypatch.setattr("demheat.runtime.paths.os.access", lambda *_: False)
+    monkeypatch.setattr("demheat.runtime.paths._takes_files", lambda _: False)
     with pytest.raises(ValueError, match=r"path = '.*field.npz': must lie in a folder that can be written into"):
         field.write(tmp_path / "field.npz")
     monkeypatch.undo()

@@ -5,8 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 from surface_bodies import brick, ring
 
-from demheat import Material
+from demheat import Material, Scene, SurfaceMesh
 from demheat.io import scenes
+from demheat.io.scenes.write import text_of_scene
 from demheat.io.surfaces import read_surface
 
 GOOD = Material(5.0)
@@ -80,5 +81,19 @@ def test_scene_files_name_them(tmp_path):
         (tmp_path / "scene.toml").write_text(SCENE.replace(old, new))
         with pytest.raises(ValueError, match=words):
             scenes.read(tmp_path / "scene.toml")
-    with pytest.raises(ValueError, match=r"Scene.inclusions\[0\] = SurfaceMesh.*: must be one of .* in a file"):
-        scenes.write(scene, tmp_path / "again.toml")
+
+
+def test_scene_files_are_written_with_their_triangles_beside(tmp_path):
+    # Thirds are in no text of few digits.
+    vertices, triangles = ring()
+    own = SurfaceMesh(vertices / 3 + 1e-3 / 7, triangles, GOOD, resistance=1e-6)
+    scene = Scene((1, 1, 1), Material(1.0), [own], gradient=(0, 1, 0))
+    scenes.write(scene, tmp_path / "scene.toml")
+    pytest.importorskip("meshio")
+    (found,) = scenes.read(tmp_path / "scene.toml").inclusions
+    assert np.array_equal(found.vertices, own.vertices) and np.array_equal(found.triangles, own.triangles)
+    assert (found.material, found.resistance) == (GOOD, 1e-6)
+    assert {each.name for each in tmp_path.iterdir()} == {"scene.toml", "scene-0.obj"}
+    # What tells rows of one scene from those of another.
+    moved = Scene((1, 1, 1), Material(1.0), [own.placed((0.5, 0.5, 0.5))], gradient=(0, 1, 0))
+    assert text_of_scene(scene) == text_of_scene(scene) != text_of_scene(moved)

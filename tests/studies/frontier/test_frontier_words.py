@@ -53,7 +53,26 @@ def test_what_gets_farther_at_less_cost_is_the_cheapest():
 
 
 def test_multipoles_are_counted_where_they_get_there():
-    assert "to 0.1 % on 1 of 1, where the next costs 5 times as much" in means.multipoles(ROWS)
+    assert "to 0.1 % on 1 of 1 (the next costs 5 times as much)" in means.multipoles(ROWS)
+    # A tie is no win, and where no other gets there is told.
+    more = [row("half", "multipole", 1.1, spread=0.2), row("unions", "multipole", 1.8), row("gyroid", "multipole", 1.0)]
+    said = means.multipoles(pd.DataFrame([*ROWS.to_dict("records"), *more]))
+    costs = "the next costs 5 times as much; on 1 no other gets there; a tie on 1; 2 times the cheapest on 1"
+    assert f"0.1 % on 2 of 4 ({costs})" in said
+
+
+def test_peers_that_tie_are_said_to():
+    theirs = [row("third", "ngsolve", 0.11), row("half", "ngsolve", 0.5), row("unions", "ngsolve", 9.0)]
+    said = means.beside_peers(pd.DataFrame([*ROWS.to_dict("records"), *theirs]))
+    assert "to 0.1 % of third in 0.11 s (DEM in 0.1, a tie);" in said and "of half in 0.5 s (DEM in 1)" in said
+    assert "unions" not in said
+
+
+def test_what_ran_once_scatters_as_much_as_most():
+    """A quarter dearer is a tie with what ran once, and none with what ran thrice."""
+    for spread, tie in ((None, True), (0.02, False)):
+        rows = pd.DataFrame([row("third", "dem", 1.0, spread=spread), row("third", "fft", 1.25)])
+        assert (len(means.best(rows, "third", "conductivity", 0.1).tied) == 2) is tie
 
 
 def test_scenes_of_one_body_are_told():

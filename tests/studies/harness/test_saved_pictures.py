@@ -94,3 +94,18 @@ def test_a_single_panel_has_no_letter_nor_have_more_than_there_are():
     with plt.rc_context(STYLE):
         figure, _ = plt.subplots(3, 9)
     assert set(titles(figure)) == {""}
+
+
+def test_powers_stand_raised_and_formulas_as_they_are(tmp_path):
+    def draw(axes):
+        axes.plot([1, 2], label="128^3 voxels, cm^-1")
+        axes.set(title=r"$x^2$", xlabel="a^b")
+        axes.legend()
+
+    figure = drawn(draw)
+    with plt.rc_context(STYLE):
+        pictures.saved(figure, tmp_path / "raised.png")
+    (axes,) = figure.axes
+    assert axes.get_legend().get_texts()[0].get_text() == "128³ voxels, cm⁻¹"
+    assert (axes.get_title(loc="left"), axes.get_xlabel()) == (r"$x^2$", "a^b")
+    plt.close(figure)

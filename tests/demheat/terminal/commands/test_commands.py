@@ -126,7 +126,7 @@ WRONG = [
     (["recommend", "SCENE", "--accuracy", "2"], "accuracy = 2.0: must be a number from 1e-9 to below 1"),
     (["recommend", "SCENE", "--accuracy", "much"], "argument --accuracy: invalid float value: 'much'"),
     (["effective", "SCENE", "--method", "fft-em"], "method = 'fft-em': must be one of exact"),
-    (["compare", "SCENE", "--method", "exact", "--out", "SCENE"], "File exists|exists"),
+    (["compare", "SCENE", "--method", "exact", "--out", "SCENE"], "--out .*scene.toml: must be a folder, and .* is a file"),
 ]  # fmt: skip
 
 
@@ -323,7 +323,31 @@ def test_the_module_is_the_command(scene):
     assert done.returncode == 2 and done.stderr.startswith("demheat: --method none: no such method")
 
 
-def test_where_a_field_goes_is_looked_at_before_it_is_solved(capsys, laminate, tmp_path):
-    for target, words in (("field.xyz", "suffix must be one of"), ("none/field.vti", "there is no folder")):
-        status, out, err = run(capsys, "solve", laminate, "--method", "exact", "--write", tmp_path / target)
-        assert status == 2 and words in err and "conductivity" not in out
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        ("solve --write field.xyz", "--write field.xyz: the suffix must be one of"),
+        ("solve --write none/field.vti", "--write none/field.vti: there is no folder"),
+        ("solve --write /proc/field.vti", "--write /proc/field.vti: must lie in a folder that can be written into"),
+        ("solve --out laminate.toml", "--out laminate.toml: must be a folder, and 'laminate.toml' is a file"),
+        ("compare --out /proc/new/folder", "--out /proc/new/folder: must be in a folder that can be written into"),
+        ("report --out .", "--out .: is a folder"),
+        ("report --out none/page.html", "--out none/page.html: there is no folder"),
+    ],
+)
+def test_where_answers_go_is_looked_at_before_anything_is_solved(capsys, laminate, tmp_path, monkeypatch, words, told):
+    if "/proc" in words and not Path("/proc/self").exists():
+        pytest.skip("no folder that root cannot write into")
+    monkeypatch.chdir(tmp_path)
+    command, *others = words.split()
+    monkeypatch.setattr(answers, "_run", None)
+    status, out, err = run(capsys, command, laminate.name, "--method", "exact", *others)
+    assert (status, out) == (2, "") and err.startswith(f"demheat: {told}"), err
+    assert [each.name for each in tmp_path.iterdir()] == ["laminate.toml"]
+
+
+def test_a_folder_is_made_when_there_is_something_to_put_there(capsys, laminate, tmp_path):
+    status, _, _ = run(capsys, "solve", laminate, "--method", "rayleigh", "--out", tmp_path / "new" / "folder")
+    assert status == 1 and not (tmp_path / "new").exists()
+    status, _, _ = run(capsys, "solve", laminate, "--method", "exact", "--out", tmp_path / "new" / "folder")
+    assert status == 0 and (tmp_path / "new" / "folder" / "exact.npz").exists()
