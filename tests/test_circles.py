@@ -44,9 +44,10 @@ def side_by_side(pairs):
 
 
 def test_no_circle_of_modules_or_folders():
-    found = circle(edges())
+    pairs = edges()
+    found = circle(pairs)
     assert not found, f"modules that import each other: {', '.join(found)}"
-    folders = {folder or "the packages": circle(pairs) for folder, pairs in side_by_side(edges()).items()}
+    folders = {folder or "the packages": circle(within) for folder, within in side_by_side(pairs).items()}
     told = "; ".join(f"in {folder} {', '.join(found)}" for folder, found in folders.items() if found)
     assert not told, f"folders that import each other: {told}"
 

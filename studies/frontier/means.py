@@ -64,8 +64,10 @@ def longest(df):
 
 def reached(df, scene, quantity, target, *, any_shape=True, peers=False):
     """All ways that get to a target, the cheapest first; ours, or those of others."""
+    # A record is wide, and this is asked for every target.
+    wanted = [name for name in ("scene", "way", "seconds", *COLUMNS[quantity]) if name in df]
     found = []
-    for row in longest(df[df["scene"] == scene]).to_dict("records"):
+    for row in longest(df.loc[df["scene"] == scene, wanted]).to_dict("records"):
         how = WAYS[row["way"]]
         if (any_shape and how.spheres) or how.peer is not peers:
             continue

@@ -30,8 +30,20 @@ DEALS, KEPT = 6, 0.9
 STORED = [name for name in study_names() if (RESULTS / f"{name}.csv").exists()]
 # Judged a dozen times or more, these take over a CPU-second each: `make test-slow`.
 SLOW = (
-    *("estimates", "fig12_15_sheet", "fig14_single_inclusion", "fig15_16_fields", "fig17_etc", "fig18_fields"),
-    *("intervals", "packings", "peers", "resistance", "scaling", "shapes", "speed_error", "sphere_benchmark"),
+    *("contrasts", "estimates", "fig12_15_sheet", "fig14_single_inclusion", "fig15_16_fields", "fig17_etc"),
+    *(
+        "fig18_fields",
+        "formless",
+        "frontier",
+        "intervals",
+        "packings",
+        "peers",
+        "resistance",
+        "scaling",
+        "shapes",
+        "speed_error",
+        "sphere_benchmark",
+    ),
     *("tuning", "zeta2"),
 )
 # Claims that no order of the rows and no change of the results make fail, and why.

@@ -72,8 +72,11 @@ def test_what_lies_in_each_other_or_conducts_little_better_stays():
 KNOWN = {(0.0, 1e3): 15.86927, (1e-3, 1e4): 11.21950, (1e-5, math.inf): 18.50288}
 
 
-@pytest.mark.parametrize(("gap", "contrast"), KNOWN)
-@pytest.mark.parametrize("load", [CELL, WALLS], ids=["cell", "walls"])
+@pytest.mark.parametrize(
+    ("gap", "contrast", "load"),
+    [(*known, load) for known, load in zip(KNOWN, (WALLS, WALLS, CELL), strict=True)],
+    ids=["touching, walls", "walls", "cell"],
+)
 def test_spheres_in_order_that_touch_or_nearly(gap, contrast, load):
     """85.7 and some 1e8 were told of the first and the last."""
     field = solve(

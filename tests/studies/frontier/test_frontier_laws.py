@@ -23,6 +23,8 @@ def same_spheres(rows):
     return abs(multipole.solve(scene_of("polydisperse"), accuracy=1e-4).conductivity / known - 1) < 1e-3
 
 
+# The measures of all scenes, a dozen CPU-seconds: what changes them, `test_cheapest_laws` sees.
+@pytest.mark.slow
 def test_shipped_laws_are_those_of_the_stored_searches():
     """Else: `python -m studies.frontier.laws`."""
     rows = read_frame(study, STORED)
