@@ -78,6 +78,7 @@ NO_ROWS = {
     "demheat/scene/shapes/parted.py": BODIES,
     "demheat/scene/shapes/torus.py": BODIES,
     "demheat/scene/shapes/closed.py": BODIES,
+    "demheat/scene/shapes/patches.py": BODIES,
     "demheat/scene/shapes/surface_mesh.py": BODIES,
     "demheat/scene/shapes/triangles.py": BODIES,
     "demheat/scene/shapes/union.py": BODIES,
