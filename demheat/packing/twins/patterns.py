@@ -32,7 +32,7 @@ MOST_SPHERES, MOST_POINTS = 256, 1 << 20
 def patterns(interfaces, radius, seed, tally, gap_spacing):
     """Touch points on all surfaces of a scene, chunk by chunk."""
     turns, leads = _Turns(seed), interfaces.stacks.leads()
-    usual = 0.8 * np.minimum(interfaces.stacks.spacing, SPACING * radius)
+    usual = np.minimum(interfaces.stacks.spacing, SPACING * radius)
     wanted = partial(_spacing, interfaces, radius, gap_spacing, usual)
     for numbers in _chunks(interfaces.spheres, np.flatnonzero(leads[: len(interfaces.spheres)]), radius):
         found = _on_spheres(numbers, interfaces, radius, turns, tally, usual, wanted)
