@@ -109,10 +109,10 @@ def test_shapes_are_left_when_the_time_is_over(name, monkeypatch):
 def test_nearest_points_are_sought_in_pieces(monkeypatch):
     rng, heard = np.random.default_rng(0), []
     points, samples = rng.random((20, 3)), rng.random((101, 3))
-    found = patterns._nearest(points, samples)
+    found = patterns.nearest_of(points, samples)
     monkeypatch.setattr(patterns, "beat", heard.append)
     monkeypatch.setattr(patterns, "SOUGHT", 10)
-    assert np.array_equal(patterns._nearest(points, samples), found) and len(heard) == 11
+    assert np.array_equal(patterns.nearest_of(points, samples), found) and len(heard) == 11
 
 
 def test_a_warning_of_a_timed_function_is_of_the_line_that_called_it():
