@@ -1,52 +1,109 @@
-"""Temperatures and fluxes of a voxel solution at any point of the box."""
+"""Temperatures and fluxes of a voxel solution at any point of the box.
+
+By harmonic polynomials through the voxels around (`references.fft.harmonic`), and between voxels where these are too
+few, or not known well enough.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
 from demheat.field import Samples
-from demheat.scene import Scene
-from references.voxels.bodies import Bodies
+from references.fft.grid import Grid
+from references.fft.harmonic import Fit, fitted
 from references.voxels.laminates import unpacked
-from references.voxels.paint import Voxels, centers
+from references.voxels.paint import centers
 
 # Flux and slope jump at an interface: a voxel of another phase, and a cut one, counts only where nothing is better.
 CUT, OTHER = 1e-2, 1e-6
+# Of so many points fits are kept: 12 MiB.
+KEPT = 100_000
 
 
-class Grid(NamedTuple):
-    """A solution at the voxel centres, its axes in the order of the box (the load first if there are walls)."""
+class Asked(NamedTuple):
+    """What temperatures and fluxes at points have in common."""
 
-    scene: Scene  # In the order of the box
-    order: tuple  # tuple of int: Axes of the user's scene that are axes 0, 1, 2 of the box
-    voxels: Voxels
-    slope: np.ndarray  # (3,) float array, K/m
-    level: float  # K: Linear part: level + slope.x
-    sharp: bool  # The temperature of a cut voxel is that of its centre (links), not a mean over its phases
-    bodies: Bodies | None = None  # Bodies, or None: That pores leave; None if all phases conduct
-    # (nx, ny, nz) float array, K: Less the linear part; as `flux`, None until it is solved for
-    temperature: np.ndarray | None = None
-    flux: np.ndarray | None = None  # (3, nx, ny, nz) float array, W/m2: Along Fourier's direction
-    # (2,) tuple of int, optional: Of a grid of which some planes across the first axis are held: the first of them, and
-    # the number of all
-    planes: tuple | None = None
+    points: np.ndarray  # In the order of the box
+    phase: np.ndarray
+    body: np.ndarray | None
+    fit: Fit
 
 
-def temperature_at(grid: Grid, points: np.ndarray) -> np.ndarray:
+def asker(grid: Callable[[], Grid]) -> Callable[[np.ndarray], Asked]:
+    """What fits at points, and keeps those asked last: who asks for temperatures mostly asks for fluxes there, too."""
+    last = []
+
+    def asked(points):
+        if not (last and np.array_equal(last[0], points)):
+            # In this order, so that what is interrupted keeps nothing.
+            found = ask(grid(), points)
+            last[:] = [points.copy(), found] if len(points) <= KEPT else []
+            return found
+        return last[1]
+
+    return asked
+
+
+def ask(grid: Grid, points: np.ndarray) -> Asked:
+    """What is asked of points, in the user's axes."""
+    points = points[:, grid.order]
+    phase = grid.scene.phase_at(points)
+    body = _body_at(grid, points, phase)
+    return Asked(points, phase, body, fitted(grid, points, phase, body))
+
+
+def temperature_at(grid: Grid, asked: Asked) -> np.ndarray:
+    """Fits to the temperatures of voxels, or between these; exact for linear fields."""
+    value, rest = asked.fit.temperature.copy(), ~asked.fit.known
+    value[rest] = temperature_between(grid, *_of(asked, rest))
+    return value
+
+
+def flux_at(grid: Grid, asked: Asked) -> np.ndarray:
+    """By the slopes of fits to the temperatures of voxels, or between the voxels' fluxes."""
+    own, rest = -grid.voxels.conductivity[asked.phase][:, None] * asked.fit.slope, ~asked.fit.known
+    own[rest] = flux_between(grid, *_of(asked, rest))
+    result = np.empty_like(own)
+    result[:, grid.order] = own
+    return result
+
+
+def _of(asked, some):
+    return asked.points[some], asked.phase[some], None if asked.body is None else asked.body[some]
+
+
+def samples(grid: Grid) -> Samples:
+    """The voxels, in the order of the user's axes."""
+    spacing, shape = grid.voxels.spacing, grid.temperature.shape
+    back = np.argsort(grid.order)
+    x = np.meshgrid(*centers(shape, spacing), indexing="ij", sparse=True)
+    temperature = np.full(shape, float(grid.level))
+    for slope, coordinate in zip(grid.slope, x, strict=True):
+        temperature += slope * coordinate
+    temperature += grid.temperature
+    # Column by column: whole fields of three components are not made twice.
+    points, flux = np.empty((temperature.size, 3)), np.empty((temperature.size, 3))
+    for column, axis in enumerate(back):
+        points[:, column] = np.broadcast_to(x[axis], shape).transpose(back).ravel()
+        flux[:, column] = grid.flux[axis].transpose(back).ravel()
+    volumes = np.full(len(points), np.prod(spacing))
+    phase = grid.voxels.phase.transpose(back).ravel().astype(np.int32)
+    return Samples(points, volumes, temperature.transpose(back).ravel(), phase, flux)
+
+
+def temperature_between(grid: Grid, points: np.ndarray, phase: np.ndarray, body: np.ndarray | None) -> np.ndarray:
     """Interpolation between the whole voxels of the point's own phase; exact for linear fields.
 
     Each voxel tells its temperature T and slope g.  With weights w, offsets d from the voxels to the point and means
     under w, the sum of w (T + g.d / 2) + mean(g).mean(d) / 2 is linear-exact for any weights, and the cubic Hermite
     polynomial along each axis where all eight voxels count.
     """
-    points = points[:, grid.order]
-    phase = grid.scene.phase_at(points)
     value, weights = np.zeros(len(points)), np.zeros(len(points))
     slope, offset = np.zeros((3, len(points))), np.zeros((3, len(points)))
-    body = _body_at(grid, points, phase)
     for index, weight, away, mirrored in _neighbours(grid, points):
         good, cut = _preference(grid.voxels, index, phase, trusted=grid.sharp)
         joined = _joined(grid, index, body)
@@ -67,39 +124,15 @@ def temperature_at(grid: Grid, points: np.ndarray) -> np.ndarray:
     return grid.level + points @ grid.slope + mean
 
 
-def flux_at(grid: Grid, points: np.ndarray) -> np.ndarray:
+def flux_between(grid: Grid, points: np.ndarray, phase: np.ndarray, body: np.ndarray | None) -> np.ndarray:
     """Trilinear interpolation between the whole voxels of the point's own phase."""
-    points = points[:, grid.order]
-    phase = grid.scene.phase_at(points)
     total, weights = np.zeros((len(points), 3)), np.zeros(len(points))
-    body = _body_at(grid, points, phase)
     for index, weight, _, mirrored in _neighbours(grid, points):
         weight = weight * _preference(grid.voxels, index, phase, trusted=False)[0] * _joined(grid, index, body)
         weights += weight
         for axis in range(3):
             total[:, axis] += weight * _sign(axis, mirrored) * grid.flux[(axis, *index)]
-    result = np.empty_like(total)
-    result[:, grid.order] = total / weights[:, None]
-    return result
-
-
-def samples(grid: Grid) -> Samples:
-    """The voxels, in the order of the user's axes."""
-    spacing, shape = grid.voxels.spacing, grid.temperature.shape
-    back = np.argsort(grid.order)
-    x = np.meshgrid(*centers(shape, spacing), indexing="ij", sparse=True)
-    temperature = np.full(shape, float(grid.level))
-    for slope, coordinate in zip(grid.slope, x, strict=True):
-        temperature += slope * coordinate
-    temperature += grid.temperature
-    # Column by column: whole fields of three components are not made twice.
-    points, flux = np.empty((temperature.size, 3)), np.empty((temperature.size, 3))
-    for column, axis in enumerate(back):
-        points[:, column] = np.broadcast_to(x[axis], shape).transpose(back).ravel()
-        flux[:, column] = grid.flux[axis].transpose(back).ravel()
-    volumes = np.full(len(points), np.prod(spacing))
-    phase = grid.voxels.phase.transpose(back).ravel().astype(np.int32)
-    return Samples(points, volumes, temperature.transpose(back).ravel(), phase, flux)
+    return total / weights[:, None]
 
 
 def _neighbours(grid, points):

@@ -18,7 +18,8 @@ from demheat.scene.turned import turned as turned_scene
 from references.fft.cg import nodes_of, solved
 from references.fft.checks import LAMINATED, Knobs, check_grid, check_load, checked, rule_of
 from references.fft.estimate import estimated
-from references.fft.interpolation import Grid, flux_at, samples, temperature_at
+from references.fft.grid import Grid
+from references.fft.interpolation import ask, flux_at, samples, temperature_at
 from references.fft.memory import OWN
 from references.fft.pencils import Pencils, most_ranks
 from references.fft.rules import warn_of_thin
@@ -48,7 +49,7 @@ def solve(
     """Solve what `fft.solve` solves, in double precision, on all ranks of an MPI run.
 
     To be called by every rank with the same arguments; what it returns, too, is to be asked by all of them at the same
-    time.
+    time. Temperatures and fluxes at points are interpolated between voxels: fits reach beyond the planes of a rank.
     """
     knobs = checked(scheme, rule, "float64", tolerance, max_iterations, 1)
     grid, knobs = _planned(scene, voxels, knobs)
@@ -132,7 +133,7 @@ def _field(scene, parts, solution, knobs, stats):
         plane = plane % slab.shape[0] if grid.scene.periodic else np.clip(plane, 0, slab.shape[0] - 1)
         first = slab.low - slab.voxels.start
         own = np.flatnonzero((plane >= slab.voxels.start + first) & (plane < slab.voxels.stop + first))
-        found = evaluate(held(), points[own])
+        found = evaluate(held(), ask(held(), points[own]))
         values = np.zeros((len(points), *found.shape[1:]))
         values[own] = found
         return slab.comm.allreduce(values)

@@ -20,7 +20,8 @@ from demheat.tensor import axis_loads
 from references.fft import cg, eyre_milton
 from references.fft.checks import LAMINATED, PRECISIONS, check_grid, check_load, check_scheme, checked, rule_of
 from references.fft.estimate import estimated, extrapolated
-from references.fft.interpolation import Grid, flux_at, samples, temperature_at
+from references.fft.grid import Grid
+from references.fft.interpolation import asker, flux_at, samples, temperature_at
 from references.fft.memory import expected
 from references.fft.perfect import check_perfect, check_rule, check_spans
 from references.fft.problem import SolvedGrid
@@ -195,7 +196,8 @@ def _as(painted, before, order):
 def _loaded(scene, box, order, painted, knobs, kept, said):
     """The Field of a scene on painted voxels."""
     slope, level = linear_part(box)
-    grid = Grid(box, order=order, voxels=painted, slope=slope, level=level, sharp=knobs.rule == "links")
+    how = {"sharp": knobs.rule == "links", "rings": knobs.scheme == "eyre-milton"}
+    grid = Grid(box, order=order, voxels=painted, slope=slope, level=level, **how)
     units = units_of(grid)
     if scene.mean_conductivities.min() == 0:
         grid = grid._replace(bodies=bodies(box, painted, slope, linked=grid.sharp))
@@ -228,18 +230,18 @@ def _field(scene, grid, units, solution, knobs, said):
 
     shape = tuple(grid.voxels.phase.shape[a] for a in np.argsort(grid.order))
     found = {"unknowns": solution.unknowns, "iterations": solution.iterations, **solution.errors, **solution.cost}
-    asked = {name: value for name, value in knobs._asdict().items() if name not in UNSAID}
-    again = partial(solve, **knobs._asdict())
+    said = said | {name: value for name, value in knobs._asdict().items() if name not in UNSAID}
+    again, asked = partial(solve, **knobs._asdict()), asker(whole)
     return Field(
         scene=scene,
         mean_flux=mean_flux(grid, units, solution),
         fractions=grid.voxels.fractions,
         sampler=lambda: samples(whole()),
-        temperature_at=lambda points: temperature_at(whole(), points),
-        flux_at=lambda points: flux_at(whole(), points),
+        temperature_at=lambda points: temperature_at(whole(), asked(points)),
+        flux_at=lambda points: flux_at(whole(), asked(points)),
         wall_temperature=scene.wall_temperatures,
         wall_heat=wall_heat(scene, units, solution),
-        stats={**found, **asked, **said, "voxels": shape},
+        stats={**found, **said, "voxels": shape},
         estimator=partial(estimated, solve=again),
         extrapolator=partial(extrapolated, solve=again),
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from demheat.scene import Scene
 from references.fft.checks import PRECISIONS, Knobs
-from references.fft.interpolation import Grid
+from references.fft.grid import Grid
 from references.fft.link_kernels import Links
 from references.fft.problem import Problem, SolvedGrid
 from references.threads import Team
