@@ -5,13 +5,13 @@ about one and a half times as much, halves between neighbours that a target lies
 in cost, and runs again, in turns, what decides. A value reaches a target if its error and those of all finer values
 that were tried, two steps at least, are within it; of those that do the one counts that costs least, run three times
 where the seconds last. Meshing, painting, packing and the coarser runs of an extrapolation count, and so does asking at
-points. Targets are 3 to .003 % of the conductivity, and of the temperature (over its span) and the flux (over its
-mean), root mean squares at 200 random points. Scenes are eleven, marked where constants of the DEM were found on them,
-and twelve that nothing was ever tuned on; three bodies that warm up, whose temperatures count; six more are there for
-the laws of error and cost alone, which `python -m studies.frontier.laws` fits to all but those twelve. What is true is
-known in closed form, by multipoles, or by two methods that close in on the same; a target is judged where that is known
-three times better. A search ends where its seconds do (a column of the row), or where the next target would take over
-two minutes or 8 GiB.
+points. Targets are 3 to .003 % of the conductivity. Fluxes and temperatures at points have a study of their own
+(`fluxes`); rows were searched for them, too, until that was there. Scenes are eleven, marked where constants of the DEM
+were found on them, and twelve that nothing was ever tuned on; three bodies that warm up, whose temperatures count; six
+more are there for the laws of error and cost alone, which `python -m studies.frontier.laws` fits to all but those
+twelve. What is true is known in closed form, by multipoles, or by two methods that close in on the same; a target is
+judged where that is known three times better. A search ends where its seconds do (a column of the row), or where the
+next target would take over two minutes or 8 GiB.
 
 Costs are those of a quiet machine, or none are stored: `python -m studies run frontier --out results --force`.
 """
@@ -48,7 +48,6 @@ COSTS = (
     "conductivity",
     "extrapolated",
     "temperature",
-    "flux",
     "ended",
     "tried",
 )
@@ -123,16 +122,8 @@ def by_accuracy(df):
     return tables.lines(df, targets=(1.0, 0.1, 0.01))
 
 
-def of_fluxes(df):
-    """The same of fluxes at points, on scenes whose fluxes are known."""
-    from studies.frontier import tables
-
-    found = tables.lines(df, "flux", (3.0, 1.0, 0.3))
-    return found[~found.drop(columns="scene").isin(["-", "?"]).all(axis=1)]
-
-
 def warming(df):
-    """The same of temperatures while bodies warm up: the largest error over the times of the papers' figures."""
+    """The same of temperatures at points in time: the largest error over the times of the papers' figures."""
     from studies.frontier import tables
     from studies.frontier.in_time import IN_TIME
 
@@ -146,8 +137,8 @@ def notes(df):
     if not means.searched(df):
         yield "No search has been run on a quiet machine yet: rows hold a conductivity at one value each, and no costs."
         return
-    for quantity, target in (("conductivity", 1.0), ("conductivity", 0.1), ("conductivity", 0.01), ("flux", 1.0)):
-        yield means.in_words(df, quantity, target)
+    for target in (1.0, 0.1, 0.01):
+        yield means.in_words(df, "conductivity", target)
 
 
 def verdict(df):
@@ -155,13 +146,6 @@ def verdict(df):
     from studies.frontier import means
 
     return " ".join(means.counted(df, "conductivity", target) for target in (1.0, 0.1, 0.01))
-
-
-def verdict_on_fluxes(df):
-    """Of fluxes at points."""
-    from studies.frontier import means
-
-    return means.counted(df, "flux", 1.0)
 
 
 def multipoles(df):

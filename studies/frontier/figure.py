@@ -17,8 +17,8 @@ FAMILIES = {"dem": "DEM", "fem": "FEM", "fft": "FFT", "multipole": "multipoles (
 BROAD, THIN = 7.0, 1.4
 
 
-def draw(df):
-    """All panels."""
+def draw(df, quantity="conductivity", *, xlim=(5.0, 0.002), ticks=(1.0, 0.1, 0.01)):
+    """All panels; accuracies of the ticks are those of the headline."""
     from matplotlib import pyplot
 
     scenes = means.scenes_of(df)
@@ -28,26 +28,28 @@ def draw(df):
         rows, columns, figsize=(2.9 * columns, 1.2 + 2.5 * rows), squeeze=False, sharex=True, sharey=True
     )
     for axes, scene in zip(grid.flat, scenes, strict=False):
-        _panel(axes, df, scene)
+        _panel(axes, df, scene, quantity)
     for axes in grid.flat[len(scenes) :]:
         axes.set_visible(False)
-    grid[0, 0].set(xscale="log", yscale="log", xlim=(5.0, 0.002), ylim=(3e-3, 200.0))
-    grid[0, 0].set_xticks([1, 0.1, 0.01], ["1", ".1", ".01"])
+    grid[0, 0].set(xscale="log", yscale="log", xlim=xlim, ylim=(3e-3, 200.0))
+    grid[0, 0].set_xticks(ticks, [f"{tick:g}".removeprefix("0") for tick in ticks])
     for axes in grid[:, 0]:
         axes.set_ylabel("CPU time, s")
     for axes in grid.flat[max(0, len(scenes) - columns) : len(scenes)]:
-        axes.set_xlabel("error of the conductivity, %")
+        axes.set_xlabel(f"error of the {quantity}, %")
         axes.tick_params(labelbottom=True)
     found = {}
     for axes in grid.flat:
         found |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
     figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=5)
-    figure.suptitle(_headline(df) if means.searched(df) else "No search has been run on a quiet machine yet")
+    figure.suptitle(
+        _headline(df, quantity, ticks) if means.searched(df) else "No search has been run on a quiet machine yet"
+    )
     return figure
 
 
-def _panel(axes, df, scene):
-    every = {target: means.reached(df, scene, "conductivity", target, any_shape=False) for target in TARGETS}
+def _panel(axes, df, scene, quantity):
+    every = {target: means.reached(df, scene, quantity, target, any_shape=False) for target in TARGETS}
     for name, label in FAMILIES.items():
         cheapest = {
             target: min((e.cpu_s for e in ways if e.family == name), default=np.nan) for target, ways in every.items()
@@ -55,7 +57,7 @@ def _panel(axes, df, scene):
         style = look(name, label=label, markersize=3.5, linewidth=THIN, linestyle="-", zorder=3)
         axes.plot(list(cheapest), list(cheapest.values()), **style)
     for target in TARGETS:
-        best = means.best(df, scene, "conductivity", target)
+        best = means.best(df, scene, quantity, target)
         if best is None:
             continue
         tie = len(best.tied) > 1
@@ -68,11 +70,11 @@ def _panel(axes, df, scene):
     axes.set_title(f"{TITLES[scene]}{' *' if scene in TUNED else ''}", fontsize=9)
 
 
-def _headline(df):
+def _headline(df, quantity, targets):
     scenes = means.scenes_of(df)
     parts = []
-    for target in (1.0, 0.1, 0.01):
-        found = means.wins(df, "conductivity", target, scenes)
+    for target in targets:
+        found = means.wins(df, quantity, target, scenes)
         said = [f"{FAMILIES[name].split()[0]} {len(found[name])}" for name in ("dem", "fem", "fft") if name in found]
         parts.append(f"{target:g} %: {', '.join(said) or 'nobody'}")
     return (

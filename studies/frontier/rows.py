@@ -8,7 +8,6 @@ import math
 import tempfile
 import warnings
 from dataclasses import replace
-from functools import partial
 
 from demheat import budget, referee
 from demheat.declared import load
@@ -28,16 +27,19 @@ KNOWN = 3.0
 # What coarse elements do not resolve is what the errors show.
 QUIET = ".*(do not fit into gaps|no particle lies|thin|narrow|miss them|smaller than a voxel|not wide|few across).*"
 DIGITS = 4
+# Of a search for conductivities; of one for fields at points, and of bodies that warm up.
+MEANS, FIELDS, IN_TIME = ("conductivity", "extrapolated"), ("temperature", "flux"), ("temperature",)
 
 
-def searched(name: str, way: str, seconds: float) -> dict:
-    """Row of a search within so many processor seconds."""
+def searched(name: str, way: str, seconds: float, quantities: tuple = MEANS) -> dict:
+    """Row of a search for some quantities within so many processor seconds."""
     scene, truth = scene_of(name), truth_of(name)
     how = begun(WAYS[way], scene)
+    quantities = IN_TIME if how.marches else quantities
 
     def judged(quantity, target):
-        if how.marches:
-            return quantity == "temperature"
+        if quantity not in quantities or how.marches:
+            return quantity in quantities
         if quantity == "extrapolated" and not how.extrapolates:
             return False
         if quantity in ("temperature", "flux") and truth.field is None:
@@ -47,12 +49,15 @@ def searched(name: str, way: str, seconds: float) -> dict:
     # What is loaded is no garbage, which each run looks for before it begins.
     gc.collect()
     gc.freeze()
-    run = partial(_point, how, name, scene, truth)
+
+    def run(value, wanted):
+        return _point(how, name, scene, truth, value, [each for each in wanted if each in quantities])
+
     trail = search(how, run, budget=seconds, judged=judged)
     if not trail.points:
         raise NotImplementedError(trail.ended)
     row = {"true_k": truth.conductivity, "true_off": truth.off, "true_by": truth.source}
-    for quantity in QUANTITIES:
+    for quantity in quantities:
         for target in TARGETS:
             place = cheapest(trail.points, quantity, target) if judged(quantity, target) else None
             cost = math.nan if place is None else trail.points[place].cost(quantity)
@@ -84,6 +89,16 @@ def at_point(name: str, way: str) -> dict:
         except (ValueError, RuntimeError) as error:
             row["point_note"] = " ".join(str(error).split())
     return row
+
+
+def fields_at_point(name: str, way: str) -> dict:
+    """Errors of temperatures and fluxes at points, %, at the value of the knob that stands for the row; no costs."""
+    how, truth = WAYS[way], truth_of(name)
+    with budget(MOST_S), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=QUIET)
+        field = _solved(how, scene_of(name), how.point)
+        found = _at_points(field, truth, field.temperature_at(truth.points), field.flux_at(truth.points))
+    return {"point": how.point, **{f"point_{quantity}": error for quantity, error in found.items()}}
 
 
 def _solved(way, scene, value):

@@ -150,14 +150,15 @@ def test_an_image_is_coarsened_first():
     assert [knobs_at(way, value, image)["voxels"] for value in (0.25, 1, 2)] == [(8, 8, 1), (32, 32, 2), (64, 64, 4)]
 
 
-def test_stored_rows_are_judged_as_their_trails_say():
+@pytest.mark.parametrize(("study", "least"), [("frontier", 200), ("fluxes", 100)])
+def test_stored_rows_are_judged_as_their_trails_say(study, least):
     """Value, cost, error and number of runs at each target, or why there is none."""
-    rows = pd.read_csv(Path(__file__).parents[3] / "results" / "frontier.csv").dropna(subset=["trail"])
-    assert len(rows) > 200
+    rows = pd.read_csv(Path(__file__).parents[3] / "results" / f"{study}.csv").dropna(subset=["trail"])
+    assert len(rows) > least
     for row in rows.to_dict("records"):
         tried = [_tried(*each) for each in json.loads(row["trail"])]
         for quantity in search_module.QUANTITIES:
-            told = json.loads(row[quantity]) if isinstance(row[quantity], str) else {}
+            told = json.loads(row[quantity]) if isinstance(row.get(quantity), str) else {}
             for target, found in told.items():
                 place = cheapest(tried, quantity, float(target))
                 assert (place is None) is isinstance(found, str), (row["scene"], row["way"], quantity, target)
