@@ -8,9 +8,8 @@ fields of its own, and of Eyre and Milton's scheme, whose temperatures ring, not
 Costs are those of a quiet machine, or none are stored: `python -m studies run fluxes --out results --force`.
 """
 
-from studies.frontier.cases import ONLY_SPHERES, QUICK_SECONDS
-from studies.frontier.scenes import SCENES
-from studies.frontier.ways import WAYS
+from studies.common.searches.scenes import ONLY_SPHERES, SCENES
+from studies.common.searches.ways import WAYS
 
 # Of the steady scenes those whose fields nothing tells exactly.
 UNKNOWN = ("ellipsoids", "square rod", "unions", "gyroid", "image")
@@ -26,7 +25,7 @@ LEFT_OUT = {
     "1000 spheres": ("fem", "fem-p1", "fft-laminate"),
     "5000 spheres": ("fem", "fem-p1", "fft-laminate", "fft-links"),
 }
-QUICK_WAYS = ("dem", "fem", "fft-loose")
+QUICK_SECONDS, QUICK_WAYS = 4.0, ("dem", "fem", "fft-loose")
 
 
 def _cases():
@@ -62,21 +61,21 @@ def QUICK(case):
 
 def run(scene, way, seconds, method):
     """Search, and find again what stands for the row."""
-    from studies.frontier import rows
+    from studies.common.searches import rows
 
     return again(scene, way, seconds, method) | rows.searched(scene, way, seconds, rows.FIELDS)
 
 
 def again(scene, way, seconds, method):
     """What of a row is no matter of costs: errors at one value of the knob."""
-    from studies.frontier import rows
+    from studies.common.searches import rows
 
     return rows.fields_at_point(scene, way)
 
 
 def warm_up(scene, way, seconds, method):
     """Load and compile the solver, work out what is true, and load what asks at points."""
-    from studies.frontier import rows
+    from studies.common.searches import rows
 
     rows.warm_up(scene, way)
     rows.fields_at_point("third", way)
@@ -87,7 +86,7 @@ def claims(df):
 
     Limits on errors were set when errors of single spheres had been looked at; the guess before any search.
     """
-    from studies.frontier import means, verdicts
+    from studies.common.searches import guesses, means
 
     each = means.longest(df)
     wide = each.pivot(index="scene", columns="way", values="point_flux")
@@ -95,7 +94,7 @@ def claims(df):
         if way in wide:
             yield f"{name} at its point: error of the flux, median over scenes, %", float(wide[way].median()), limit
     if each["scene"].nunique() > 1:
-        yield from verdicts.guess(each, "flux")
+        yield from guesses.guess(each, "flux")
 
 
 def table(df):
@@ -109,7 +108,7 @@ def temperatures(df):
 
 
 def _lines(df, quantity, targets):
-    from studies.frontier import tables
+    from studies.common.searches import tables
 
     found = tables.lines(df, quantity, targets)
     return found[~found.drop(columns="scene").isin(["-", "?"]).all(axis=1)]
@@ -117,7 +116,7 @@ def _lines(df, quantity, targets):
 
 def notes(df):
     """Who wins, in words made of the rows."""
-    from studies.frontier import means
+    from studies.common.searches import means
 
     if not means.searched(df):
         yield "No search has been run on a quiet machine yet: rows hold errors at one value each, and no costs."
@@ -128,13 +127,13 @@ def notes(df):
 
 def verdict(df):
     """In numbers."""
-    from studies.frontier import means
+    from studies.common.searches import means
 
     return " ".join(means.counted(df, "flux", target) for target in (3.0, 1.0))
 
 
 def plot(df):
     """Cost over error, a panel for each scene."""
-    from studies.frontier.figure import draw
+    from studies.common.searches.figure import draw
 
     return draw(df, "flux", xlim=(5.0, 0.2), ticks=(3.0, 1.0, 0.3))

@@ -66,7 +66,8 @@ def QUICK(case):
 
 def run(scene, way, seconds, method):
     """Search, and find again what stands for the row; or ask `effective`."""
-    from studies.frontier import asked, rows, ways
+    from studies.common.searches import rows, ways
+    from studies.frontier import asked
 
     if way == ways.ASKED:
         return again(scene, way, seconds, method) | asked.row_of(scene)
@@ -75,7 +76,8 @@ def run(scene, way, seconds, method):
 
 def again(scene, way, seconds, method):
     """What of a row is no matter of costs: the conductivity at one value of the knob."""
-    from studies.frontier import asked, rows, ways
+    from studies.common.searches import rows, ways
+    from studies.frontier import asked
 
     if way == ways.ASKED:
         return {"point": asked.TARGETS[0], "point_k": asked.conductivity(scene)}
@@ -84,7 +86,8 @@ def again(scene, way, seconds, method):
 
 def warm_up(scene, way, seconds, method):
     """Load and compile the solver; work out what is true."""
-    from studies.frontier import asked, rows, ways
+    from studies.common.searches import rows, ways
+    from studies.frontier import asked
 
     if way == ways.ASKED:
         asked.warm_up(scene)
@@ -110,29 +113,29 @@ def table(df):
     values of a knob are tried no nearer. "-": nobody gets there within the seconds of the search; "?": the truth is
     not known three times better. *: constants of the DEM were found on this body, or on it at other contrasts.
     """
-    from studies.frontier import tables
+    from studies.common.searches import tables
 
     return tables.lines(df)
 
 
 def by_accuracy(df):
     """The same to three accuracies."""
-    from studies.frontier import tables
+    from studies.common.searches import tables
 
     return tables.lines(df, targets=(1.0, 0.1, 0.01))
 
 
 def warming(df):
     """The same of temperatures at points in time: the largest error over the times of the papers' figures."""
-    from studies.frontier import tables
-    from studies.frontier.in_time import IN_TIME
+    from studies.common.searches import tables
+    from studies.common.searches.in_time import IN_TIME
 
     return tables.lines(df, "temperature", (3.0, 1.0, 0.3, 0.1, 0.03), IN_TIME)
 
 
 def notes(df):
     """Who wins, in words made of the rows."""
-    from studies.frontier import means
+    from studies.common.searches import means
 
     if not means.searched(df):
         yield "No search has been run on a quiet machine yet: rows hold a conductivity at one value each, and no costs."
@@ -143,21 +146,21 @@ def notes(df):
 
 def verdict(df):
     """In numbers, for the front page."""
-    from studies.frontier import means
+    from studies.common.searches import means
 
     return " ".join(means.counted(df, "conductivity", target) for target in (1.0, 0.1, 0.01))
 
 
 def multipoles(df):
     """Among spheres alone."""
-    from studies.frontier import means
+    from studies.common.searches import means
 
     return means.multipoles(df)
 
 
 def beside_peers(df):
     """Programs of others on the same bodies, searched for in the same way."""
-    from studies.frontier import means
+    from studies.common.searches import means
 
     return means.beside_peers(df)
 
@@ -171,13 +174,13 @@ def advised(df):
 
 def who_wins(df):
     """With the names of scenes."""
-    from studies.frontier import means
+    from studies.common.searches import means
 
     return " ".join(means.in_words(df, "conductivity", target) for target in (1.0, 0.1, 0.01))
 
 
 def plot(df):
     """Cost over error, a panel for each scene."""
-    from studies.frontier.figure import draw
+    from studies.common.searches.figure import draw
 
     return draw(df)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import statistics
 
-from studies.frontier import asked, means
-from studies.frontier.ways import ASKED_S, WAYS
+from studies.common.searches import means
+from studies.common.searches.ways import ASKED_S, WAYS
+from studies.frontier import asked
 
 # Set by what was asked of them: a cost within this factor of what was said, and of the cheapest.
 SAID, DEAREST = 3.0, 5.0

@@ -11,9 +11,9 @@ import warnings
 from typing import NamedTuple
 
 from demheat import effective, recommend, referee
-from studies.frontier.scenes import HELD_BACK, scene_of
-from studies.frontier.truth import truth_of
-from studies.frontier.ways import ASKED, ASKED_S
+from studies.common.searches.scenes import HELD_BACK, scene_of
+from studies.common.searches.truth import truth_of
+from studies.common.searches.ways import ASKED, ASKED_S
 from studies.harness import methods
 from studies.harness.repeated import forget
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from studies.frontier.in_time import IN_TIME
-from studies.frontier.scenes import FOR_LAWS, HELD_BACK, SCENES
-from studies.frontier.ways import ASKED, ASKED_S, WAYS
+from studies.common.searches.in_time import IN_TIME
+from studies.common.searches.scenes import FOR_LAWS, HELD_BACK, ONLY_SPHERES, SCENES
+from studies.common.searches.ways import ASKED, ASKED_S, WAYS
 
 # Processor seconds of a search, of a scene that is named, else of any.
 USUAL, BUDGET = (
@@ -45,11 +45,6 @@ LEFT_OUT = {
 PEERS = ("third", "third at 0.01", "third at 1000", "half", "half at 100")
 PAPER = (*PEERS, "83 spheres", "polydisperse")
 DEM_LIMIT = ("half", "half at 100", "83 spheres", "1000 spheres", "unequal, f = .5", "infinite")
-ONLY_SPHERES = (
-    *("third", "third at 0.01", "third at 1000", "third at infinity", "half", "half at 100", "polydisperse"),
-    *("83 spheres", "1000 spheres", "unequal, f = .5", "30 at 0.001", "infinite", "resistance", "box of 1:1:4"),
-    *("5000 spheres", "box of 1:3:1", "10 pores", "3000 spheres"),
-)
 
 
 def all_cases():

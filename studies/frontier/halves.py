@@ -18,7 +18,7 @@ from demheat.cheapest.cost_laws import predicted
 from demheat.cheapest.loads import loads_of
 from demheat.cheapest.ways import FIXED, HOMES, law_and_measures
 from demheat.runtime.paths import replaced
-from studies.frontier.scenes import FOR_LAWS, STEADY, scene_of
+from studies.common.searches.scenes import FOR_LAWS, STEADY, scene_of
 from studies.harness import methods
 
 FILE = Path(__file__).with_name("halves.csv")

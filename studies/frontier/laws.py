@@ -21,9 +21,10 @@ import numpy as np
 from demheat.cheapest import cost_laws as shipped
 from demheat.cheapest.measures import Measures
 from demheat.cheapest.ways import law_and_measures
-from studies.frontier import halves, means
-from studies.frontier.scenes import FOR_LAWS, STEADY, scene_of
-from studies.frontier.ways import WAYS
+from studies.common.searches import means
+from studies.common.searches.scenes import FOR_LAWS, STEADY, scene_of
+from studies.common.searches.ways import WAYS
+from studies.frontier import halves
 
 # The way that each method's law is fitted to; rules of the FFT are told apart by the scene.
 FITTED = {"dem": "dem", "fem": "fem", "fft": "fft-loose", "multipole": "multipole"}

@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 import studies.frontier as study
 from demheat.cheapest import cost_laws as shipped
 from references import multipole
+from studies.common.searches.scenes import scene_of
 from studies.frontier import laws
-from studies.frontier.scenes import scene_of
 from studies.harness.table import read_frame
 
 STORED = Path(__file__).parents[3] / "results" / "frontier.csv"

@@ -5,7 +5,8 @@ import json
 import pandas as pd
 import pytest
 
-from studies.frontier import advice, means
+from studies.common.searches import means
+from studies.frontier import advice
 
 
 def row(scene, way, seconds, spread=0.01):

@@ -10,7 +10,7 @@ import numpy as np
 from demheat import referee
 from demheat.declared import load
 from demheat.scene import Scene
-from studies.frontier.ways import Way, knobs_at
+from studies.common.searches.ways import Way, knobs_at
 
 
 def _slab():

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from studies.frontier import means
-from studies.frontier.scenes import SCENES
-from studies.frontier.search import TARGETS
+from studies.common.searches import means
+from studies.common.searches.scenes import SCENES
+from studies.common.searches.search import TARGETS
 
 
 def lines(df, quantity="conductivity", targets=TARGETS, among=SCENES):

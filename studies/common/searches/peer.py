@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from studies.frontier.ways import Way, knobs_at
+from studies.common.searches.ways import Way, knobs_at
 from studies.harness import runner
 
 

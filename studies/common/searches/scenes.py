@@ -13,8 +13,8 @@ from demheat.addition import add_spheres
 from demheat.gallery import EDGE, HADDAD, loaded, scaled
 from demheat.powers import cube_root
 from demheat.scene import Box, Cylinder, Ellipsoid, Image, LevelSet, Material, Scene, Sphere, Union
+from studies.common.searches.in_time import IN_TIME
 from studies.common.steady_scenes import STEADY, STEADY_TITLES, TUNED  # noqa: F401 (known from here, too)
-from studies.frontier.in_time import IN_TIME
 
 # Of what is placed at random here; scenes of other studies have other seeds.
 SEED = 4040
@@ -209,6 +209,12 @@ FOR_LAWS: dict[str, Callable[[], Scene]] = {
     "3000 spheres": _three_thousand,
 }
 SCENES = STEADY | HELD_BACK
+# Whose bodies are disjoint spheres, as multipoles ask for.
+ONLY_SPHERES = (
+    *("third", "third at 0.01", "third at 1000", "third at infinity", "half", "half at 100", "polydisperse"),
+    *("83 spheres", "1000 spheres", "unequal, f = .5", "30 at 0.001", "infinite", "resistance", "box of 1:1:4"),
+    *("5000 spheres", "box of 1:3:1", "10 pores", "3000 spheres"),
+)
 TITLES = STEADY_TITLES | {
     "ellipsoids": "8 ellipsoids",
     "fibre at 50": "fibre, f = .5, contrast 50",

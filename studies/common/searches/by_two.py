@@ -1,6 +1,6 @@
 """Conductivities of scenes that have no closed form, by what two methods close in on.
 
-    python -m studies.frontier.by_two
+    python -m studies.common.searches.by_two
 
 writes them to `by_two.csv` beside this file, in some minutes; a scene that is not there yet cannot be searched. The
 conductivity is that of the method with the narrower interval; it may be off by what the two differ by, or by half of
@@ -15,8 +15,8 @@ import sys
 from demheat import dem, referee
 from demheat.runtime.paths import replaced
 from references import fem
-from studies.frontier.scenes import scene_of
-from studies.frontier.truth import FILE
+from studies.common.searches.scenes import scene_of
+from studies.common.searches.truth import FILE
 
 # What each method is given; edges in those of the box.
 GIVEN = {

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from functools import partial
 from typing import NamedTuple
 
-from studies.frontier.in_time import IN_TIME
-from studies.frontier.scenes import HELD_BACK, SCENES, STEADY, TUNED
-from studies.frontier.search import TARGETS
-from studies.frontier.ways import NEAR, WAYS
+from studies.common.searches.in_time import IN_TIME
+from studies.common.searches.scenes import HELD_BACK, SCENES, STEADY, TUNED
+from studies.common.searches.search import TARGETS
+from studies.common.searches.ways import NEAR, WAYS
 
 # Accuracies that multipoles are counted at, %.
 MULTIPOLES = (1.0, 0.1, 0.01)

@@ -12,12 +12,12 @@ from dataclasses import replace
 from demheat import budget, referee
 from demheat.declared import load
 from demheat.runtime.process_state import stopwatch
-from studies.frontier import in_time
-from studies.frontier.peer import found
-from studies.frontier.scenes import scene_of
-from studies.frontier.search import MOST_S, QUANTITIES, TARGETS, Point, cheapest, foreseen, search
-from studies.frontier.truth import truth_of
-from studies.frontier.ways import WAYS, begun, knobs_at
+from studies.common.searches import in_time
+from studies.common.searches.peer import found
+from studies.common.searches.scenes import scene_of
+from studies.common.searches.search import MOST_S, QUANTITIES, TARGETS, Point, cheapest, foreseen, search
+from studies.common.searches.truth import truth_of
+from studies.common.searches.ways import WAYS, begun, knobs_at
 from studies.harness import methods
 from studies.harness.cost import measured
 from studies.harness.repeated import forget

@@ -9,13 +9,13 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from studies.frontier import search as search_module
+from studies.common.searches import search as search_module
+from studies.common.searches.in_time import IN_TIME, knobs_in_time
+from studies.common.searches.scenes import FOR_LAWS, HELD_BACK, SCENES, TUNED
+from studies.common.searches.search import Point, cheapest, reached, search
+from studies.common.searches.search import foreseen as foreseen_seconds
+from studies.common.searches.ways import NEAR, STEP, WAYS, between, growth, knobs_at, smooth, value_at
 from studies.frontier.cases import all_cases, foreseen
-from studies.frontier.in_time import IN_TIME, knobs_in_time
-from studies.frontier.scenes import FOR_LAWS, HELD_BACK, SCENES, TUNED
-from studies.frontier.search import Point, cheapest, reached, search
-from studies.frontier.search import foreseen as foreseen_seconds
-from studies.frontier.ways import NEAR, STEP, WAYS, between, growth, knobs_at, smooth, value_at
 
 DEM = WAYS["dem"]
 

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from studies.frontier import means
-from studies.frontier.scenes import TITLES, TUNED
-from studies.frontier.search import TARGETS
+from studies.common.searches import means
+from studies.common.searches.scenes import TITLES, TUNED
+from studies.common.searches.search import TARGETS
 from studies.harness.figures import GREY, look
 
 COLUMNS = 6

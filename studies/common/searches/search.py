@@ -11,7 +11,7 @@ import statistics
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from studies.frontier.ways import NEAR, Way, between, growth, value_at
+from studies.common.searches.ways import NEAR, Way, between, growth, value_at
 
 TARGETS = (3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 0.003)  # per cent
 QUANTITIES = ("conductivity", "extrapolated", "temperature", "flux")

@@ -17,11 +17,11 @@ from demheat.field import Field, Samples
 from demheat.runtime.paths import replaced
 from demheat.scene.volumes import fractions
 from references.exact.squares import square_rods
-from studies.frontier import in_time
-from studies.frontier.scenes import FOR_LAWS, scene_of
+from studies.common.searches import in_time
+from studies.common.searches.scenes import FOR_LAWS, scene_of
 
 # Conductivities of scenes that no closed form and no multipoles know: by two methods that close in on the same
-# (`python -m studies.frontier.by_two`).
+# (`python -m studies.common.searches.by_two`).
 FILE = Path(__file__).with_name("by_two.csv")
 # Where fields are compared, at random, the same for every method.
 POINTS, SEED = 200, 2027
