@@ -1,4 +1,4 @@
-"""How edges of bodies lie in voxels: what laminates miss beside them goes with that, and is chance from grid to grid."""
+"""How edges of bodies lie in voxels: what laminates miss beside them goes with that, by chance from grid to grid."""
 
 from __future__ import annotations
 
