@@ -146,7 +146,7 @@ class Shape(ABC):
 
     @property
     def drawn(self) -> tuple[float, int, int, float]:
-        """Of the triangles that it is drawn by: area, m2, number, sharp edges, reach from its middle, m; 0 of a form."""
+        """Of triangles that it is drawn by: area, m2, number, sharp edges, reach from its middle, m; 0 of a form."""
         return 0.0, 0, 0, 0.0
 
     @property

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from surface_bodies import brick, ring
 
 from demheat import Ellipsoid, Layer, LevelSet, Material, Scene, Sphere, SurfaceMesh, gallery, recommend
 from demheat.cheapest import cost_laws
 from demheat.cheapest.measures import measures
-from surface_bodies import brick, ring
 
 SCENE = gallery.sphere_in_cube(10.0)
 
@@ -108,7 +108,8 @@ def test_more_triangles_without_sharp_edges_need_no_second_run():
     # Bounds are as wide as the tube; a ball with as much volume to its surface is half as wide again.
     assert_allclose(m.narrowest, 0.24, rtol=1e-12)
     way = ways_of(SurfaceMesh(*ring(), Material(10.0)))["fft"]
-    assert_allclose(way.cpu_s, 3 * 1.5 * cost_laws.predicted("fft", m, way.knobs["voxels"]).cpu_s, rtol=1e-9)
+    # Three loads; answers of smooth bodies are extrapolated, which costs .3 times as much besides.
+    assert_allclose(way.cpu_s, 3 * 1.3 * cost_laws.predicted("fft", m, way.knobs["voxels"]).cpu_s, rtol=1e-9)
 
 
 def test_few_particles_across_a_thin_tube_are_not_asked_for():
