@@ -38,6 +38,14 @@ KINDS = {"method": str, "knob": str, "rows": int, "scenes": int}
 # Edges of elements on a small sphere over its diameter, as `references.mesh` has them: no size asked for makes them
 # longer.
 ON_SPHERE = 0.165
+# Seconds for each square of an element on a surface of one triangle, besides those of any that is searched for, and how
+# they grow with the logarithm of the number of triangles: cubes, tetrahedra, octahedra, balls and a knot (see
+# docs/decisions/estimates.md).
+ON_TRIANGLES = {"dem": 1.7e-4, "fft": 4.5e-5}
+DEEPER = 0.38
+# Particles (edges of cubes as large) across what triangles enclose, below which intervals tell next to nothing: a knot
+# of a tube a tenth of the cell thick had one 33 times as wide as asked for with 1000 of them.
+ACROSS = 2.7
 # Of the logarithm of the factor within which nine in ten are, about a standard deviation.
 LIKELY = 0.6
 # Below that a measure makes no difference: exponents of it must not blow up where it vanishes.
@@ -169,15 +177,27 @@ def _value(law, m, refined):
     h = m.smallest * math.exp(refined)
     if law.knob == SIZE.knob:
         coarsest = law.coarsest * m.edge
-        return coarsest if h >= ON_SPHERE * m.narrowest else min(h, coarsest)
+        # Among triangles a lattice is as coarse everywhere.
+        return coarsest if h >= ON_SPHERE * m.narrowest and not m.triangles else min(h, coarsest)
     per_edge = m.edge / h
+    if m.triangles and law.knob == PARTICLES.knob:
+        per_edge = max(per_edge, ACROSS * m.edge / m.narrowest)
     return max(math.ceil(per_edge**3 if law.knob == PARTICLES.knob else per_edge), int(law.coarsest))
 
 
 def predicted_by(law: Law, m: Measures, value: float) -> Predicted:
     """What a law predicts."""
     error = math.exp(error_terms(law.knob, m, value) @ law.error_powers)
-    return Predicted(error, *_work(law, m, size_terms(law.knob, m, value)))
+    cpu_s, memory = _work(law, m, size_terms(law.knob, m, value))
+    return Predicted(error, cpu_s + on_triangles(law.method, m, value), memory)
+
+
+def on_triangles(method: str, m: Measures, value: float) -> float:
+    """Seconds besides of finding the nearest of many triangles, as a tree is the deeper the more of them there are."""
+    each, knob = ON_TRIANGLES.get(method.split("-")[0], 0.0), law_of(method).knob
+    if not (each and m.triangles):
+        return 0.0
+    return each * (1 + DEEPER * math.log(m.triangles)) * m.drawn / element(knob, m, value) ** 2
 
 
 def work(method: str, m: Measures, number: float) -> Predicted:

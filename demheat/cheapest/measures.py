@@ -36,6 +36,10 @@ class Measures(NamedTuple):
     count: int  # Number of inclusions
     count_searched: int
     gap: float  # Least gap between two enclosing balls, or twice that to a wall, over the smaller one's radius
+    # drawn, triangles, sharp: Of surfaces of triangles the area, m2, the number of these and of their sharp edges
+    drawn: float = 0.0
+    triangles: int = 0
+    sharp: int = 0
 
 
 def measures(scene: Scene) -> Measures:
@@ -50,6 +54,11 @@ def measures(scene: Scene) -> Measures:
     # Volume over width: of a layer half its two faces, of a ball a sixth of its surface, of a fibre a quarter.
     faces = np.array([2 if shape.flat else 6 if shape.bounded else 4 for shape in shapes])
     surfaces = faces * volumes / widths
+    areas, triangles, sharp, _ = np.array([shape.drawn for shape in shapes]).T
+    # Of triangles the area is known, and with it how wide the ball or the polyhedron around a ball is that has as much
+    # volume to it: bounds are much wider than a knot's tube.
+    widths = np.where(areas > 0, np.minimum(widths, 6 * volumes / np.maximum(areas, 1e-300)), widths)
+    surfaces = np.where(areas > 0, areas, surfaces)
     searched, asked = (np.array([shape.finding == how for shape in shapes]) for how in ("search", "function"))
     return Measures(
         edge=edge,
@@ -64,6 +73,9 @@ def measures(scene: Scene) -> Measures:
         count=len(shapes),
         count_searched=int(searched.sum()),
         gap=_gap(scene),
+        drawn=float(areas.sum()),
+        triangles=int(triangles.sum()),
+        sharp=int(sharp.sum()),
     )
 
 
@@ -107,6 +119,8 @@ def _gap(scene):
     if not outer:
         return WIDEST
     centers, radii = (np.array(part) for part in zip(*(shape.ball() for shape in outer), strict=True))
+    # Balls around bounds reach farther than those around triangles.
+    radii = np.array([shape.drawn[3] or radius for shape, radius in zip(outer, radii, strict=True)])
     size = np.array(scene.size)
     if not scene.periodic:
         low, high = centers - radii[:, None], size - centers - radii[:, None]

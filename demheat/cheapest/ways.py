@@ -59,6 +59,8 @@ LEAST_SAVED = 0.98
 ENOUGH = (32, 32, 32)
 # What coarser runs for the interval cost, with the solve, over the solve; and those of an extrapolation.
 BESIDES, FOR_LIMIT = 1.5, 1.3
+# Beside sharp edges of triangles the first interval is wider than laws of smooth bodies tell: there is a second run.
+AGAIN = 2.0
 # Parts of an image's voxels along each axis from one run to the next at most; voxels of the block that tells the error.
 MOST_PARTS, BLOCK = 3, 64**3
 
@@ -247,7 +249,8 @@ def _has_limit(name, law, loads):
 
 
 def _all(cost, loads, limit=False):
-    return (FOR_LIMIT if limit else BESIDES) * len(loads.parts) * cost.cpu_s
+    again = AGAIN if any(shape.drawn[2] for shape in loads.body.inclusions) else 1.0
+    return again * (FOR_LIMIT if limit else BESIDES) * len(loads.parts) * cost.cpu_s
 
 
 def knobs_of(way) -> str:

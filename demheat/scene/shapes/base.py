@@ -145,6 +145,11 @@ class Shape(ABC):
         return float(np.min(high[ends] - low[ends], initial=np.inf))
 
     @property
+    def drawn(self) -> tuple[float, int, int, float]:
+        """Of triangles that it is drawn by: area, m2, number, sharp edges, reach from its middle, m; 0 of a form."""
+        return 0.0, 0, 0, 0.0
+
+    @property
     def depth(self) -> float:
         """How far inwards of its surface nothing of it is in the way, m; infinite without another side."""
         return 0.5 * self.width

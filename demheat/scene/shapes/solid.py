@@ -131,6 +131,8 @@ class Solid(Shape):
             # No nearer than the box of its bounds.
             near = np.linalg.norm(np.maximum(np.abs(moved) - half, 0.0), axis=1) < distance
             near = np.flatnonzero(near & (distance > 0) & any(shift))
+            if not len(near):
+                continue
             other = self._distance(moved[near])
             closer = other < distance[near]
             offsets[near[closer]], distance[near[closer]] = moved[near[closer]], other[closer]

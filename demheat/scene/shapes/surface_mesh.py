@@ -115,6 +115,12 @@ class SurfaceMesh(Solid):
         """Volume, m3."""
         return self._body.volume
 
+    @property
+    def drawn(self) -> tuple[float, int, int, float]:
+        """Area, number and sharp edges of its triangles, and how far they reach; see `Shape.drawn`."""
+        body, sharp = self._body, int(self._patches.sharp.sum())
+        return float(body.areas.sum()), len(body.triangles), sharp, float(np.linalg.norm(body.vertices, axis=1).max())
+
     def placed(self, center: Sequence[float]) -> SurfaceMesh:
         """The same body with the middle of its bounds elsewhere; see `Shape.placed`."""
         shift = np.subtract(center, self.center)

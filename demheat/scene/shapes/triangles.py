@@ -71,11 +71,26 @@ class Triangles:
             beat("points beside a mesh")
             part = points[begin : begin + BLOCK]
             near = parents[tree.query(part, min(NEAREST, len(parents)))[1].reshape(len(part), -1)]
-            there = _nearest_in(part[:, None], *np.moveaxis(self.corners[near], 2, 0))
-            best = np.argmin(np.sum((there - part[:, None]) ** 2, axis=2), axis=1)
-            rows = np.arange(len(part))
-            feet[begin : begin + len(part)], own[begin : begin + len(part)] = there[rows, best], near[rows, best]
+            feet[begin : begin + len(part)], own[begin : begin + len(part)] = self._nearest_of(part, near)
         return feet, own
+
+    def _nearest_of(self, points, near):
+        """The nearest point of some triangles of each point, (n, few) int array, the first of equals; and whose it is.
+
+        Pieces of one triangle are side by side: of a large one nearly all are, which is looked at once.
+        """
+        new = np.ones(near.shape, bool)
+        for number in range(1, near.shape[1]):
+            new[:, number] = np.all(near[:, :number] != near[:, number, None], axis=1)
+        rows, columns = np.nonzero(new)
+        there = _nearest_in(points[rows], *np.moveaxis(self.corners[near[rows, columns]], 1, 0))
+        away = np.full(near.shape, np.inf)
+        away[rows, columns] = np.sum((there - points[rows]) ** 2, axis=1)
+        best = np.argmin(away, axis=1)
+        place = np.empty(near.shape, int)
+        place[rows, columns] = np.arange(len(rows))
+        each = np.arange(len(points))
+        return there[place[each, best]], near[each, best]
 
     @cached_property
     def _columns(self):

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from surface_bodies import brick, ring
 
-from demheat import Ellipsoid, Layer, LevelSet, Material, Scene, Sphere, gallery
+from demheat import Ellipsoid, Layer, LevelSet, Material, Scene, Sphere, SurfaceMesh, gallery, recommend
 from demheat.cheapest import cost_laws
 from demheat.cheapest.measures import measures
 
@@ -70,6 +71,52 @@ def test_surfaces_that_cost_more_are_told_apart():
     other = measures(Scene(size, Material(1.0), [wavy], gradient=(1, 0, 0)))
     # Half of the cell, which is as wide as the body.
     assert other.asked == other.surface == pytest.approx(2.0, rel=1e-3) and other.searched == 0
+
+
+def ways_of(shape):
+    """Those that are refined, of one body in a cell, by name."""
+    told = recommend(Scene((1.0,) * 3, Material(1.0), [shape], gradient=(0.0, 1.0, 0.0)), 0.01).ways
+    return {way.method: way for way in told if way.method in ("dem", "fft")}
+
+
+def test_triangles_and_their_sharp_edges_cost():
+    """Law and parts of it, beside a ball of the same volume."""
+    cube = SurfaceMesh(*brick((0.4, 0.4, 0.4)), Material(10.0))
+    ball = Sphere((0.5,) * 3, (0.75 * 0.064 / math.pi) ** (1 / 3), Material(10.0))
+    m = measures(Scene((1.0,) * 3, Material(1.0), [cube], gradient=(0.0, 1.0, 0.0)))
+    assert (m.triangles, m.sharp) == (12, 12)
+    # Six faces; the widest ball within; its corners are nearer to each other's images than .31 of their radius twice.
+    assert_allclose([m.drawn, m.surface, m.searched, m.narrowest], [0.96, 0.96, 0.96, 0.4], rtol=1e-12)
+    assert_allclose(m.gap, (1 - 0.4 * math.sqrt(3)) / (0.2 * math.sqrt(3)), rtol=1e-12)
+    drawn, round_ones = ways_of(cube), ways_of(ball)
+    # Measured: .05 to .07 seconds for the ball, .8 to 1.1 for each of two runs for the cube (docs/decisions/estimates).
+    assert drawn["dem"].cpu_s > 15 * round_ones["dem"].cpu_s
+    assert drawn["fft"].cpu_s > 15 * round_ones["fft"].cpu_s
+    for name, each, knob in (("dem", 1.7e-4, "particles"), ("fft", 4.5e-5, "voxels")):
+        value = drawn[name].knobs[knob]
+        per_area = value ** (2 / 3) if name == "dem" else value**2
+        besides = each * (1 + 0.38 * math.log(12)) * 0.96 * per_area
+        smooth = cost_laws.predicted(name, m._replace(triangles=0), value).cpu_s
+        assert_allclose(cost_laws.predicted(name, m, value).cpu_s - smooth, besides, rtol=1e-9)
+        # Three loads, half as much again for the interval, and a second run beside edges.
+        assert_allclose(drawn[name].cpu_s, 2 * 3 * 1.5 * (smooth + besides), rtol=1e-9)
+
+
+def test_more_triangles_without_sharp_edges_need_no_second_run():
+    m = measures(Scene((1.0,) * 3, Material(1.0), [SurfaceMesh(*ring(), Material(10.0))], gradient=(0.0, 1.0, 0.0)))
+    assert (m.triangles, m.sharp) == (2304, 0)
+    # Bounds are as wide as the tube; a ball with as much volume to its surface is half as wide again.
+    assert_allclose(m.narrowest, 0.24, rtol=1e-12)
+    way = ways_of(SurfaceMesh(*ring(), Material(10.0)))["fft"]
+    # Three loads; answers of smooth bodies are extrapolated, which costs .3 times as much besides.
+    assert_allclose(way.cpu_s, 3 * 1.3 * cost_laws.predicted("fft", m, way.knobs["voxels"]).cpu_s, rtol=1e-9)
+
+
+def test_few_particles_across_a_thin_tube_are_not_asked_for():
+    m = measures(Scene((1.0,) * 3, Material(1.0), [SurfaceMesh(*ring(), Material(10.0))], gradient=(0.0, 1.0, 0.0)))
+    thin = m._replace(narrowest=0.1)
+    assert cost_laws.needed_to_show("dem", thin, 0.1) == math.ceil(27.0**3)
+    assert cost_laws.needed_to_show("dem", thin._replace(triangles=0), 0.1) < 27**3 / 10
 
 
 def test_pores_and_superconductors_are_measured():
