@@ -20,6 +20,7 @@ BROAD, THIN = 7.0, 1.4
 def draw(df, quantity="conductivity", *, xlim=(5.0, 0.002), ticks=(1.0, 0.1, 0.01)):
     """All panels; accuracies of the ticks are those of the headline."""
     from matplotlib import pyplot
+    from matplotlib.ticker import NullFormatter
 
     scenes = means.scenes_of(df)
     rows = max(1, math.ceil(len(scenes) / COLUMNS))
@@ -33,6 +34,7 @@ def draw(df, quantity="conductivity", *, xlim=(5.0, 0.002), ticks=(1.0, 0.1, 0.0
         axes.set_visible(False)
     grid[0, 0].set(xscale="log", yscale="log", xlim=xlim, ylim=(3e-3, 200.0))
     grid[0, 0].set_xticks(ticks, [f"{tick:g}".removeprefix("0") for tick in ticks])
+    grid[0, 0].xaxis.set_minor_formatter(NullFormatter())
     for axes in grid[:, 0]:
         axes.set_ylabel("CPU time, s")
     for axes in grid.flat[max(0, len(scenes) - columns) : len(scenes)]:
