@@ -58,7 +58,7 @@ WALKS = (
 )
 # Voxels of certain bounds of checkerboards.
 CERTAIN = 128
-MODULES = {"walkers": "references.walkers", "bracket": "references.bracket.voxels"}
+MODULES = {"walkers": "references.walkers", "bracket-voxels": "references.bracket.voxels"}
 # On another processor they go other ways: two means are 1.4 of half an interval of 2 % apart, twice in a hundred times
 # as much again, and their lag may be the next.
 TOLERANCES = {"walked_ratio": Tolerance(0.06, 0.0), "walked_half_percent": Tolerance(0.8, 0.0)}
@@ -126,7 +126,8 @@ def _cases():
             for size in BRICKS:
                 yield _case("fem-p1", part, contrast, None, size)
         for contrast in CHECKERED:
-            yield {"name": "bracket", "part": part, "contrast": contrast, "method": "bracket", "voxels": CERTAIN}
+            where = {"part": part, "contrast": contrast}
+            yield {"name": "bracket", **where, "method": "bracket-voxels", "voxels": CERTAIN}
     for part, contrasts, fraction, walks in WALKS:
         for contrast in contrasts:
             yield _walks(part, contrast, fraction, walks)
