@@ -20,6 +20,9 @@ def draw(df):
     _between_bounds(one, df)
     _apart(other, with_elements(df))
     _by_walkers(last, df)
+    every = dict(zip(*reversed(last.get_legend_handles_labels()), strict=True))
+    every |= dict(zip(*reversed(other.get_legend_handles_labels()), strict=True))
+    figure.legend(every.values(), every, loc="outside lower right", ncols=4, fontsize=8)
     return figure
 
 
@@ -58,7 +61,11 @@ def _by_walkers(axes, df):
         label="walkers, 95 %",
     )
     _marked(axes, rows, "off_percent", places)
+    for side in (-walked.NEAR, walked.NEAR):
+        axes.axvline(side, color="0.6", lw=0.8, ls=":", label="2 %")
     axes.set(xlabel="distance from walkers, %", title="walkers as referee")
+    axes.use_sticky_edges = False
+    axes.margins(x=0.05)
 
 
 def _name(row):
@@ -70,6 +77,7 @@ def _places(axes, rows):
     """Heights of scenes, the first above."""
     names = list(dict.fromkeys(map(_name, rows.to_dict("records"))))
     axes.set_yticks(range(len(names)), names[::-1], fontsize=8)
+    axes.set_ylabel("part and fraction, contrast")
     return {name: k for k, name in enumerate(names[::-1])}
 
 
@@ -80,4 +88,3 @@ def _marked(axes, rows, column, places):
             heights = [places[_name(row)] for row in mine.to_dict("records")]
             title = methods.all_methods()[name].title
             axes.plot(mine[column], heights, mark, color=COLOURS[name], ms=5, label=title)
-    axes.legend(fontsize=8)
