@@ -32,5 +32,5 @@ def _line(df, judged, scene, group):
     line["walkers +-"] = known[1] if known else NAN
     line["not in walkers'"] = walked.named(walked.outside(judged), judged)
     line["at least"], line["at most"] = walked.certain(df, first)
-    over = own[[walked.beyond(df, row) > 0 for row in own.to_dict("records")]]
+    over = own[[not walked.beyond(df, row) <= 0 for row in own.to_dict("records")]]
     return line | {"not in bounds": walked.named(over, own)}

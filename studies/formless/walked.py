@@ -73,9 +73,11 @@ def certain(df, row):
 
 
 def beyond(df, row):
-    """How far a value lies outside of its bounds, % of the one it passes; 0 between them."""
+    """How far a value lies outside of its bounds, % of the one it passes; 0 between them, not-a-number of none."""
     low, high = certain(df, row)
     below, above = low - row["k_ratio"], row["k_ratio"] - high
+    if not (below <= 0 or above <= 0):
+        return float("nan")
     return 100 * max(below / low if below > 0 else 0.0, above / high if above > 0 else 0.0)
 
 
@@ -106,4 +108,4 @@ def _rest(rows):
     if not len(rest):
         return ""
     ends = dict.fromkeys(f"{end:.2g}" for end in (rest.min(), rest.max()))
-    return f" ({' to '.join(ends)} % off)"
+    return f" (others are {' to '.join(ends)} % off)"

@@ -1,5 +1,6 @@
 """What walkers say as a referee in study `formless`, on rows made up by hand."""
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -51,7 +52,8 @@ def test_the_finest_elements_and_all_others_are_judged():
     assert walked.outside(judged)["name"].tolist() == ["dem", "fft"]
     assert walked.wrong(judged)["name"].tolist() == ["fft"]
     assert walked.in_words(df).endswith(
-        "of FEM they hold 1 of 1; of DEM they hold 0 of 1 (1.6 % off); of FFT they hold 0 of 1 (3 % off)"
+        "of FEM they hold 1 of 1; of DEM they hold 0 of 1 (others are 1.6 % off); of FFT they hold 0 of 1 (others are "
+        "3 % off)"
     )
 
 
@@ -67,6 +69,7 @@ def test_how_far_beyond_its_bounds_a_value_is():
         assert walked.beyond(frame(bracket, own), own) == pytest.approx(percent)
         # Without it those of its fractions hold.
         assert walked.beyond(frame(own), own) == 0.0
+    assert np.isnan(walked.beyond(frame(bracket), own | {"k_ratio": float("nan")}))
 
 
 def test_the_round_knot_is_as_large_as_that_of_triangles():
