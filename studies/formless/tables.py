@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
+from demheat import referee
 from studies.formless import walked
 from studies.formless.verdicts import with_elements
 
@@ -27,8 +28,7 @@ def _line(df, judged, scene, group):
         apart = group[group["name"].map(walked.TITLES) == title]["apart_percent"]
         line[title] = float(apart.iloc[0]) if len(apart) else NAN
     known, judged = walked.witness(df, *scene), judged[judged["case"].isin(own["case"])]
-    # Walkers are off elements by what these are off walkers, over what they are of them.
-    line["walkers"] = 100 * (known[0] / first["k_ratio"] - 1) if known else NAN
+    line["walkers"] = 100 * referee.value_error(known[0], first["k_ratio"]) if known else NAN
     line["walkers +-"] = known[1] if known else NAN
     line["not in walkers'"] = walked.named(walked.outside(judged), judged)
     line["at least"], line["at most"] = walked.certain(df, first)
