@@ -209,7 +209,7 @@ def _found(loads, accuracy, allowed, memory):
         return found, Way("bracket", knobs), tuple(passed), ""
     missing, found, way = best
     if found is not None:
-        passed.append(f"nearest is {way.method}, accuracy {missing * accuracy:.2g}")
+        passed.append(f"nearest is {way.method}, within {missing * accuracy:.2g}")
     raise RuntimeError(f"effective: no method gets to accuracy = {accuracy:g} here. " + "; ".join(passed))
 
 
