@@ -68,8 +68,8 @@ class Table:
             found.append(tuple(self._converted((key, i, j), *cell) for j, cell in cells))
         return tuple(found)
 
-    def text(self, name: str, default=None, *, among=None) -> str | None:
-        """A text."""
+    def text(self, name: str, default=None, *, among=None, hint=nearest) -> str | None:
+        """A text; `hint` says what may have been meant by one that is none of those it must be among."""
         key = self.needed(name) if default is ... else self.key(name)
         if key is None:
             return default
@@ -78,7 +78,7 @@ class Table:
             raise self.error(key, f" = {as_toml(value)}: must be text in quotes")
         if among is not None and value not in among:
             listed = ", ".join(map(repr, among))
-            raise self.error(key, f" = {as_toml(value)}: must be one of {listed}{nearest(value, among)}")
+            raise self.error(key, f" = {as_toml(value)}: must be one of {listed}{hint(value, among)}")
         return value
 
     def value(self, name: str, kind: type, words: str, default=None):

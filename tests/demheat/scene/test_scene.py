@@ -49,7 +49,11 @@ def test_bad_scenes(make, match):
     [
         ([ball(0.5, 0.5, 0.5, 0.51)], PERIODIC, "sphere of diameter 1.02 is larger than the box; must be <= 1.0"),
         ([ball(1.2, 0.5, 0.5, 0.1)], {}, "lies outside the box"),
-        ([ball(0.3, 0.5, 0.5, 0.2), ball(0.6, 0.5, 0.5, 0.2)], {}, r"\[0\] and \[1\] overlap partially"),
+        (
+            [ball(0.3, 0.5, 0.5, 0.2), ball(0.6, 0.5, 0.5, 0.2)],
+            {},
+            r"\[0\] and \[1\] overlap partially: .*spheres of 0.75 times their radii would be$",
+        ),
         ([ball(0.1, 0.5, 0.5, 0.2), ball(0.8, 0.5, 0.5, 0.2)], PERIODIC, r"\[0\] and \[1\] overlap partially"),
         ([ball(0.5, 0.5, 0.5, 0.1), ball(0.5, 0.5, 0.5, 0.2)], {}, r"\[0\] is hidden by inclusions\[1\]"),
         ([ball(0.5, 0.5, 0.5, 0.1), ball(0.5, 0.5, 0.5, 0.1)], {}, r"\[0\] is hidden by inclusions\[1\]"),
