@@ -6,11 +6,12 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from demheat.io.surfaces import READ
 from demheat.io.words import nearest
 from demheat.scene import SurfaceMesh
 
 # Formats of surfaces, and of solids that are none.
-SURFACES, SOLIDS = (".stl", ".ply", ".obj", ".msh", ".off", ".vtk", ".vtu"), (".step", ".stp", ".iges", ".igs", ".brep")
+SURFACES, SOLIDS = (*READ, ".off"), (".step", ".stp", ".iges", ".igs", ".brep")
 ALSO = {
     "sphere": ("ball", "bead", "particle", "circle"),
     "box": ("cube", "cuboid", "brick", "block", "rectangle", "prism"),
