@@ -120,6 +120,8 @@ def _methods(table):
     solve = table.table("solve", {})
     methods = {}
     for name in solve.values:
+        if name in ("method", "methods"):
+            raise solve.error(name, ": each method has a table of its own, as [solve.fft]; it may be empty")
         if name not in all_methods():
             near = nearest(name, all_methods()) or f"; must be one of {', '.join(all_methods())}"
             raise solve.error(name, f": no such method{near}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from typing import NamedTuple
 
 from demheat.declared import all_methods, load
@@ -94,9 +95,16 @@ def _check(method, knob, error):
         raise error(f"no knob of {method.name}{near}")
 
 
+def _power(text):
+    """A whole number with a power of ten, as 1e5."""
+    if not re.fullmatch(r"[+-]?\d+[eE]\+?\d{1,2}", text, re.ASCII):
+        raise ValueError
+    return int(float(text))
+
+
 def _value(method, knob, text, word):
     """What a text means: a number, a flag, a length with its unit, or itself."""
-    for kind in (int, float):
+    for kind in (int, _power, float):
         try:
             return kind(text)
         except ValueError:

@@ -55,7 +55,9 @@ class Parser(argparse.ArgumentParser):
             message += self._meant(rest.split()[0].partition("=")[0])
         _, invalid, rest = message.partition("invalid choice: ")
         if invalid:
-            message += nearest(rest.split()[0].strip("'\""), COMMANDS)
+            word = rest.split()[0].strip("'\"")
+            first = f"; a command comes first, as `demheat solve {word}`" if word.endswith(".toml") else ""
+            message += first or nearest(word, COMMANDS)
         # What `option_values` says names the option itself.
         message = re.sub(r"^argument \S+: (?=--)", "", message)
         raise ValueError(f"{message}; {self.prog} --help tells more")

@@ -13,6 +13,8 @@ from demheat.terminal.commands.words import typed
 
 def run(file, options) -> int:
     """Draw; the exit status."""
+    if options.knob and not options.methods:
+        raise ValueError(f"--knob {options.knob[0]}: no method is named; must be with --method")
     # Methods of the file are solved only if they are named: a picture of the scene costs nothing.
     wanted = asked(file, options.methods, options.knob, default=()) if options.methods else []
     folder = typed("--out", options.out or OUT, check_output)

@@ -47,7 +47,7 @@ def test_bad_scenes(make, match):
 @pytest.mark.parametrize(
     ("inclusions", "load", "match"),
     [
-        ([ball(0.5, 0.5, 0.5, 0.51)], PERIODIC, "sphere of diameter 1.02 is larger than the box; must be <= 1.0"),
+        ([ball(0.5, 0.5, 0.5, 0.51)], PERIODIC, "sphere of diameter 1.02 is larger than the box; must be <= 1.0 m"),
         ([ball(1.2, 0.5, 0.5, 0.1)], {}, "lies outside the box"),
         (
             [ball(0.3, 0.5, 0.5, 0.2), ball(0.6, 0.5, 0.5, 0.2)],

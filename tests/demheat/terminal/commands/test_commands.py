@@ -120,6 +120,8 @@ WRONG = [
     (["solve", "SCENE", "--method", "maxwel"], "did you mean 'maxwell'"),
     (["solve", "SCENE", "--method", "exact", "--knob", "points=4"], "--knob points=4: no knob of exact; did you mean 'points_per_axis'"),
     (["solve", "SCENE", "--method", "maxwell", "--knob", "voxels=4"], "--knob voxels=4: no knob of maxwell; must be one of formula"),
+    (["scene.toml"], "a command comes first, as `demheat solve scene.toml`"),
+    (["view", "SCENE", "--knob", "voxels=4"], "--knob voxels=4: no method is named; must be with --method"),
     (["solve", "SCENE", "--method", "exact", "--knob", "voxels"], "--knob voxels: must be like voxels=64"),
     (["solve", "SCENE", "--method", "exact", "--knob", "fft.voxels=4"], "no method 'fft' is asked for"),
     (["solve", "SCENE", "--method", "rayleigh", "--knob", "formula=maxwell"], "method 'rayleigh' is what has formula = 'rayleigh'; must be left out"),
@@ -182,8 +184,8 @@ def test_what_values_of_knobs_mean(scene):
         asked(file, ["fem"], ["fem.size=2 kg"], default=())
     found = asked(file, ["fem", "fft"], [words[0], *words[2:5]], default=())
     assert [each.knobs for each in found] == [{"size": 0.02}, {"tolerance": 1e-5, "threads": None, "voxels": 32}]
-    (dem,) = asked(file, None, ["particles=500", "allow_few=True"], default=("dem",))
-    assert dem.knobs == {"particles": 500, "allow_few": True}
+    (dem,) = asked(file, None, ["particles=5e4", "allow_few=True"], default=("dem",))
+    assert dem.knobs == {"particles": 50000, "allow_few": True} and type(dem.knobs["particles"]) is int
 
 
 def test_an_accuracy_may_be_per_cent(capsys, laminate):
