@@ -54,6 +54,12 @@ def test_bad_scenes(make, match):
             {},
             r"\[0\] and \[1\] overlap partially: .*spheres of 0.75 times their radii would be$",
         ),
+        # What touches another one from within would come out of it.
+        (
+            [ball(0.3, 0.5, 0.5, 0.2), ball(0.4, 0.5, 0.5, 0.1), ball(0.6, 0.5, 0.5, 0.15)],
+            {},
+            r"\[0\] and \[2\] .* fully nested$",
+        ),
         ([ball(0.1, 0.5, 0.5, 0.2), ball(0.8, 0.5, 0.5, 0.2)], PERIODIC, r"\[0\] and \[1\] overlap partially"),
         ([ball(0.5, 0.5, 0.5, 0.1), ball(0.5, 0.5, 0.5, 0.2)], {}, r"\[0\] is hidden by inclusions\[1\]"),
         ([ball(0.5, 0.5, 0.5, 0.1), ball(0.5, 0.5, 0.5, 0.1)], {}, r"\[0\] is hidden by inclusions\[1\]"),
