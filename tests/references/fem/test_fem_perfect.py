@@ -82,6 +82,13 @@ def test_layers_are_exact_and_one_temperature():
     assert_allclose(field.flux_at(inside), np.tile(field.mean_flux, (len(inside), 1)), rtol=0, atol=2e-4)
 
 
+def test_what_differs_in_a_good_conductor_acts_on_the_rest():
+    """Its own resistance is 7e-6 of the whole."""
+    field = fem.solve(body(Layer(0, 0.3, 0.7, Material(MATRIX * 1e5)), **X), size=0.4)
+    assert_allclose(field.conductivity, MATRIX / (0.6 + 0.4e-5), rtol=1e-8)  # the solver's tolerance
+    assert field.stats["rounds"] > 1  # solved apart
+
+
 def test_bodies_that_films_part():
     layers = Layer(0, 0.2, 0.4, PERFECT, resistance=0.1), Layer(0, 0.4, 0.7, PERFECT)
     for load in (X, CELL):
