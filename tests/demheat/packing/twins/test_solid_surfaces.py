@@ -134,7 +134,7 @@ def two_unions():
 @pytest.mark.parametrize("scene", [two_eggs(), two_unions()], ids=["eggs", "unions"])
 def test_points_of_narrow_gaps_are_as_close_as_they_ask_and_even(scene):
     """Every place lies within so many of its own spacings of a point, and no two are nearer than what is thinned to."""
-    radius, gap_spacing = 0.045, 0.85
+    radius, gap_spacing = 0.06, 0.85
     interfaces = Interfaces(scene, 4.0 * radius)
     found = list(patterns(interfaces, radius, 0, Tally(), gap_spacing))
     for number, (points, _, own) in enumerate(found):
