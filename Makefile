@@ -5,6 +5,8 @@ PY := .venv/bin/python
 OLD := .venv-oldest
 # Bytecode is made of what is imported, and not of all that is there: half of the time.
 PIP := install --quiet --disable-pip-version-check --no-compile
+# Tests start Python a hundred times: where it may keep no bytecode each compiles all that it imports, 2 s for Numba.
+export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: run test test-all test-slow test-twins test-oldest full docs clean
 

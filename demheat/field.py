@@ -26,7 +26,7 @@ from demheat.gate import check_answer
 from demheat.scene import Scene
 from demheat.scene.bodies import inside
 from demheat.scene.frozen import ReadOnly, read_only, table_of
-from demheat.scene.inputs import axis_number, finite, reals
+from demheat.scene.inputs import axis_number, check_rows, finite, points_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -359,10 +359,7 @@ def _guarded(evaluate, scene):
     """The same function of points behind one check of them."""
 
     def at(points):
-        points = reals("points", points, "(n, 3) finite coordinates in metres")
-        points = points[None] if points.shape == (3,) else points
-        if points.ndim != 2 or points.shape[1] != 3 or not np.all(np.isfinite(points)):
-            raise ValueError(f"points of shape {points.shape}: must be (n, 3) finite coordinates in metres")
+        points = points_of("points", points)
         if not scene.periodic:
             _check_inside(points, scene)
         return evaluate(points)
@@ -384,9 +381,5 @@ def _outside_pores(evaluate, scene, in_pores):
 
 
 def _check_inside(points, scene):
-    outside = ~inside(points, scene.domain, scene.size, slack=ON_WALL)
-    if outside.any():
-        raise ValueError(
-            f"points: {outside.sum()} lie outside the {scene.domain} with walls, 0 to {scene.size}; the first is "
-            f"{points[outside][0].tolist()}"
-        )
+    within = inside(points, scene.domain, scene.size, slack=ON_WALL)
+    check_rows("points", points, within, f"lies outside the {scene.domain} with walls, 0 to {scene.size}")

@@ -8,6 +8,7 @@ import signal
 from pathlib import Path
 
 import faults
+import pytest
 from faults import Toy
 
 
@@ -31,6 +32,8 @@ def command(number):
         return ""
 
 
+# All is compiled anew without docstrings: a dozen CPU-seconds.
+@pytest.mark.slow
 def test_odd_ways_to_start_python(tmp_path):
     """Assertions and docstrings left out, warnings as errors, ASCII alone, sets in another order, nobody's home."""
     # Two rows, of which each starts Python anew: enough for an order of rows.

@@ -69,8 +69,8 @@ march(1e3)
 }
 
 
-# Two CPU-seconds each; these loops stop as that of halos does: `make test-slow`.
-SLOW = ("radial distribution", "two-point probability", "neighbours")
+# Two CPU-seconds each; these loops stop as that of halos does, and time steps between two of them: `make test-slow`.
+SLOW = ("radial distribution", "two-point probability", "neighbours", "time steps")
 
 
 @pytest.mark.parametrize(

@@ -34,9 +34,17 @@ pytestmark = pytest.mark.filterwarnings("ignore:gaps beside inclusions")
 IDENTITY = 1e-7
 
 
+# Another method here but for the sides of elements on balls, of which errors alone tell.
+ALIKE = ("fem-straight",)
+
+
 def claiming(*claims):
     """Parametrise by the methods that claim all these properties."""
-    names = [name for name, method in METHODS.items() if not set(claims) & set(method.exceptions)]
+    names = [
+        name
+        for name, method in METHODS.items()
+        if not set(claims) & set(method.exceptions) and ("errors" in claims or name not in ALIKE)
+    ]
     return pytest.mark.parametrize("name", names)
 
 

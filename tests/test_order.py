@@ -35,7 +35,12 @@ def errors(method, value):
     return np.mean(found, axis=0)
 
 
-@pytest.mark.parametrize("method", [m for m in REFINED if m.orders], ids=lambda method: method.name)
+# Errors of these at one size `test_methods` sees; each is another method here but for its links or sides: `test-slow`.
+SLOW = ("dem-plain", "fem-straight")
+NAMES = [pytest.param(m, marks=pytest.mark.slow) if m.name in SLOW else m for m in REFINED if m.orders]
+
+
+@pytest.mark.parametrize("method", NAMES, ids=lambda method: method.name)
 def test_declared_orders(method):
     sizes = [method.resolution.size(value) for value in method.orders.values]
     rows = np.abs([errors(method, value) for value in method.orders.values])

@@ -35,8 +35,8 @@ def hand(name):
 
 
 # Some CPU-seconds each, and each is another method here but for a rule of its links or voxels, its elements' sides, or,
-# bricks, what `test_methods` asks: `make test-slow`.
-SLOW = ("dem-arithmetic", "dem-mean", "dem-plain", "fem-straight", "fem-p1", "fem-bricks", "fft-em-plain")
+# bricks and elements, what `test_methods` asks (turned, reversed, scaled): `make test-slow`.
+SLOW = ("dem-arithmetic", "dem-mean", "dem-plain", "fem", "fem-straight", "fem-p1", "fem-bricks", "fft-em-plain")
 NAMES = [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name for name in METHODS]
 
 

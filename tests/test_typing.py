@@ -71,11 +71,14 @@ def examples():
 NAMES = [name for name, _ in examples()]
 
 
+# mypy reads NumPy for a dozen CPU-seconds; that examples run, `test_reference`, `test_scripts` and others see.
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in ("seen", "mistakes")])
 def test_an_example_passes(name, told):
     assert told[name] == []
 
 
+@pytest.mark.slow
 def test_nothing_is_of_any_type(told):
     seen = told["seen"]
     assert len(seen) == SEEN.count("reveal_type") and not [line for line in seen if 'is "Any"' in line]
@@ -83,6 +86,7 @@ def test_nothing_is_of_any_type(told):
     assert len(solves) == 5 and all("scene: demheat.scene.scene.Scene" in line for line in solves)
 
 
+@pytest.mark.slow
 def test_mistakes_are_found(told):
     """Each on a line of its own, behind the head."""
     first = HEAD.count("\n") + 1

@@ -209,7 +209,7 @@ def _found(loads, accuracy, allowed, memory):
         return found, Way("bracket", knobs), tuple(passed), ""
     missing, found, way = best
     if found is not None:
-        passed.append(f"nearest is {way.method}, accuracy {missing * accuracy:.2g}")
+        passed.append(f"nearest is {way.method}, within {missing * accuracy:.2g}")
     raise RuntimeError(f"effective: no method gets to accuracy = {accuracy:g} here. " + "; ".join(passed))
 
 
@@ -257,7 +257,7 @@ def recommend(scene: Scene, accuracy: float = 1e-3, *, memory: float | None = No
 
 
 def _checked(accuracy, memory):
-    accuracy = finite("accuracy", accuracy, "a number from 1e-9 to below 1", lambda v: 1e-9 <= v < 1)
+    accuracy = finite("accuracy", accuracy, "a number from 1e-9 to below 1, as 0.01 for 1 %", lambda v: 1e-9 <= v < 1)
     if memory is None:
         return accuracy, SHARE * free_memory()
     return accuracy, finite("memory", memory, "a number of bytes > 0", lambda v: v > 0)

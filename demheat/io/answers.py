@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.io.words import as_toml, nearest
+from demheat.scene.inputs import reals
 
 FORMAT = "conduction-answers/1"
 
@@ -44,8 +45,10 @@ class Answers(NamedTuple):
 
 
 NUMBERS = ("conductivity", "lower", "upper", "cpu_s", "wall_s", "memory_mib", "unknowns")
+COSTS = NUMBERS[3:]
 WORDS = ("scene", "resolution", "refused", "remark")
 HEAD = ("program", "version", "method", "machine")
+VALID = "must be an object with format, program and answers, as docs/benchmark.md has it"
 
 
 def read_answers(path) -> Answers:
@@ -56,10 +59,12 @@ def read_answers(path) -> Answers:
     except UnicodeDecodeError:
         raise ValueError(f"{path}: must be text in UTF-8") from None
     except (json.JSONDecodeError, RecursionError) as error:
-        raise ValueError(f"{path}: is no JSON: {error}") from None
+        raise ValueError(f"{path}: is no JSON: {error}; {VALID}") from None
     if not isinstance(table, dict) or table.get("format") != FORMAT:
-        found = as_toml(table.get("format")) if isinstance(table, dict) else "no object"
-        raise ValueError(f"{path}: format = {found}: must be {FORMAT!r}")
+        found = (
+            "no object" if not isinstance(table, dict) else as_toml(table["format"]) if "format" in table else "missing"
+        )
+        raise ValueError(f"{path}: format = {found}: must be {FORMAT!r}{_hint(table)}")
     _check_keys(path, "", table, ("format", "answers", *HEAD))
     head = {name: _word(path, "", name, table.get(name, "")) for name in HEAD}
     if not head["program"]:
@@ -67,7 +72,29 @@ def read_answers(path) -> Answers:
     given = table.get("answers")
     if not isinstance(given, list) or not given:
         raise ValueError(f"{path}: answers = {as_toml(given)}: must be a list of objects, one for each answer")
-    return Answers(path, **head, answers=tuple(_given(path, f"answers[{n}]", each) for n, each in enumerate(given)))
+    answers = tuple(_given(path, f"answers[{n}]", each) for n, each in enumerate(given))
+    _check_once(path, answers)
+    return Answers(path, **head, answers=answers)
+
+
+def _hint(table):
+    """What else a file may be."""
+    if isinstance(table, dict) and {"scene", "known"} <= {*table}:
+        return "; this is a scene, and what is judged are answers to scenes"
+    return "" if isinstance(table, dict) and "format" in table else f"; {VALID}"
+
+
+def _check_once(path, answers):
+    """Raise ValueError if a scene is answered twice at one resolution: which of them counts nobody could tell."""
+    seen = {}
+    for n, each in enumerate(answers):
+        before = seen.setdefault((each.scene, each.resolution), n)
+        if before != n:
+            at = f" at resolution {each.resolution!r}" if each.resolution else ""
+            raise ValueError(
+                f"{path}: answers[{n}]: scene {each.scene!r}{at} is answered in answers[{before}] already; must be "
+                "there once, or have a resolution of its own"
+            )
 
 
 def _given(path, place, table):
@@ -84,10 +111,11 @@ def _given(path, place, table):
     if not {"conductivity", "temperatures", "refused"} & {*values}:
         raise ValueError(f"{path}: {place}: must have a conductivity, temperatures, or refused, the reason why not")
     low, high = values.get("lower", math.nan), values.get("upper", math.nan)
-    if math.isnan(low) != math.isnan(high) or low > high:
-        raise ValueError(
-            f"{path}: {place}: lower = {low:g}, upper = {high:g}: must both be there, lower not above upper"
-        )
+    if math.isnan(low) != math.isnan(high):
+        there, lacks = ("upper", "lower") if math.isnan(low) else ("lower", "upper")
+        raise ValueError(f"{path}: {place}: has {there} and no {lacks}; must have both, or neither")
+    if low > high:
+        raise ValueError(f"{path}: {place}: lower = {low:g}, upper = {high:g}: lower must not be above upper")
     return Given(**values)
 
 
@@ -106,16 +134,18 @@ def _word(path, place, name, value):
 
 def _number(path, place, name, value):
     good = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-    if not good or (name in ("cpu_s", "wall_s", "memory_mib", "unknowns") and value < 0):
-        raise ValueError(f"{path}: {place}.{name} = {as_toml(value)}: must be a finite number, in SI; no cost below 0")
+    least = ", >= 0" if name in COSTS else ", W/(m K)"
+    if not good or (name in COSTS and value < 0):
+        quoted = ", without quotes" if isinstance(value, str) else ""
+        raise ValueError(f"{path}: {place}.{name} = {as_toml(value)}: must be a finite number{least}{quoted}")
     return float(value)
 
 
 def _array(path, place, name, value, shape):
     what = "three rows of three" if shape else "a list of"
     try:
-        found = np.array(value, dtype=float)
-    except (TypeError, ValueError):
+        found = reals(name, value, "")
+    except ValueError:
         found = np.full(1, math.nan)
     if not np.all(np.isfinite(found)) or (found.shape != shape if shape else found.ndim != 1):
         raise ValueError(f"{path}: {place}.{name} = {as_toml(value)}: must be {what} finite numbers")

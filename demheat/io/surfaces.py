@@ -15,6 +15,8 @@ from demheat.runtime.paths import checked_path, replaced
 from demheat.scene import Material, SurfaceMesh
 from demheat.scene.inputs import chosen, vector
 
+# Formats that are read and tested; meshio knows more.
+READ = (".stl", ".ply", ".obj", ".msh")
 # Of lengths in files, m.
 UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "nm": 1e-9, "in": 0.0254}
 

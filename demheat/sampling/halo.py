@@ -17,7 +17,7 @@ from demheat.runtime.progress import stage
 from demheat.sampling import halo_kernels as kernels
 from demheat.scene import ROUND_AXES, STEFAN_BOLTZMANN, Convection
 from demheat.scene.bodies import inside
-from demheat.scene.inputs import LEAST, MOST, chosen, finite, flag, moderate, reals, vector
+from demheat.scene.inputs import LEAST, MOST, check_rows, chosen, finite, flag, moderate, points_of, reals, vector
 
 # Sides of the cells: this part of the radius, but no fewer samples to a cell on average than this. Cheapest of 1 to 1/4
 # and 1 to 8 for 1e5 points and radii of 2 to 15 mean radii; sides of a whole or a third of the radius cost up to twice.
@@ -43,9 +43,9 @@ def halo_average(
     """
     size, periodic = _checked_box(size, periodic)
     radius = _checked_radius(radius, size, periodic)
-    points = _inside(_checked_points("points", points), size, periodic)
+    points = _inside(points_of("points", points), size, periodic)
     values, volumes = _checked_values(len(points), values, volumes)
-    at = points if at is None else _wrapped(_checked_points("at", at), size, periodic)
+    at = points if at is None else _wrapped(points_of("at", at), size, periodic)
     phase, wanted = _checked_phases(len(points), len(at), phases)
     columns = values.reshape(len(points), -1)
     means = np.empty((len(at), columns.shape[1]))
@@ -221,14 +221,10 @@ def _halo_radius(field, ratio):
 
 
 def _checked_at(at, scene):
-    at = _checked_points("at", at)
+    at = points_of("at", at)
     if not scene.periodic:
-        outside = ~inside(at, "box", scene.size) | ~inside(at, scene.domain, scene.size, slack=1e-9)
-        if outside.any():
-            raise ValueError(
-                f"at: {outside.sum()} points lie outside the {scene.domain} with walls, 0 to {scene.size}; the first "
-                f"is {at[outside][0].tolist()}"
-            )
+        within = inside(at, "box", scene.size) & inside(at, scene.domain, scene.size, slack=1e-9)
+        check_rows("at", at, within, f"lies outside the {scene.domain} with walls, 0 to {scene.size}")
     return at
 
 
@@ -250,14 +246,6 @@ def _checked_radius(radius, size, periodic):
     return float(radius)
 
 
-def _checked_points(name, points):
-    points = reals(name, points, "(n, 3) finite coordinates in metres")
-    points = points[None] if points.shape == (3,) else points
-    if points.ndim != 2 or points.shape[1] != 3 or not np.all(np.isfinite(points)):
-        raise ValueError(f"{name} of shape {points.shape}: must be (n, 3) finite coordinates in metres")
-    return points
-
-
 def _wrapped(points, size, periodic):
     """Points with periodic coordinates in 0 <= x < size; rounding may take a tiny negative one to size itself."""
     wrapped = points - np.where(periodic, np.floor(points / size) * size, 0.0)
@@ -269,9 +257,7 @@ def _inside(points, size, periodic):
     if len(points) == 0:
         raise ValueError("points of shape (0, 3): there must be samples to average")
     outside = ~periodic & ((points < -1e-9 * size) | (points > (1 + 1e-9) * size))
-    if outside.any():
-        which = int(np.flatnonzero(outside.any(axis=1))[0])
-        raise ValueError(f"points[{which}] = {points[which].tolist()}: lies outside the walls of the box, 0 to {size}")
+    check_rows("points", points, ~outside.any(axis=1), f"lies outside the walls of the box, 0 to {size}")
     return _wrapped(points, size, periodic)
 
 

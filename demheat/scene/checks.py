@@ -166,7 +166,7 @@ def check_geometry(scene) -> None:
         for axis in np.flatnonzero(np.isfinite(high - low) & (high - low > limit * (1 + TOUCH))):
             raise ValueError(
                 f"Scene.inclusions[{number}]: {shape.kind} of diameter {(high - low)[axis]:.6g} is larger than the "
-                f"box; must be <= {limit[axis]}"
+                f"box; must be <= {limit[axis]} m"
             )
         if not scene.periodic and not shape.meets(scene.size):
             raise ValueError(f"Scene.inclusions[{number}]: {shape} lies outside the box {scene.size}")

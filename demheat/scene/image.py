@@ -18,6 +18,12 @@ from demheat.scene.material import Material, check_material
 # Phases are numbered in 16 bits, as on the grids of methods; voxels of one slab, which takes 8 bytes for each.
 MOST_LABELS = 2**16
 SLAB = 2**22
+# More labels than these look like grey values.
+LABELS = 16
+GREY = (
+    "grey values ask for a threshold first{}, from which on all are of one label, as `read_image` and files of scenes "
+    "take it"
+)
 TYPES = (np.uint8, np.int8, np.uint16, np.int16, np.uint32, np.int32, np.int64)
 
 
@@ -215,8 +221,7 @@ def _checked_labels(labels):
     if np.ma.is_masked(labels) or labels.dtype.kind not in "iub":
         kind = "masked" if np.ma.is_masked(labels) else labels.dtype
         raise ValueError(
-            f"Image.labels of type {kind}: must be whole numbers, one for each material; grey values ask for a "
-            "threshold first, from which on all are of one label, as `read_image` and files of scenes take it"
+            f"Image.labels of type {kind}: must be whole numbers, one for each material; {GREY.format('')}"
         )
     return labels
 
@@ -244,9 +249,11 @@ def _checked_materials(materials, found):
     lacking = [label for label in found if label not in materials]
     if lacking:
         more = f" and {len(lacking) - 8} more" if len(lacking) > 8 else ""
+        middle = f", such as threshold = {(found[0] + found[-1] + 1) // 2}"
+        grey = f"; {GREY.format(middle)}" if len(found) > LABELS else ""
         raise ValueError(
             f"Image.materials: none for labels {', '.join(map(str, lacking[:8]))}{more} of the image; must have one "
-            "for each"
+            f"for each{grey}"
         )
     return {label: materials[label] for label in found}
 

@@ -8,6 +8,7 @@ from numbers import Integral, Real
 
 import numpy as np
 
+POINTS = "(n, 3) finite coordinates in metres"
 WORDS = {2: "two", 3: "three"}
 # Sizes of numbers whose products and squares floating point still holds: beyond, methods gave zeros and not-a-number.
 LEAST, MOST = 1e-50, 1e50
@@ -35,6 +36,24 @@ def reals(name: str, value, valid: str) -> np.ndarray:
     if array is None:
         raise ValueError(f"{name} = {shown(value)}: must be {valid}")
     return array
+
+
+def points_of(name: str, value) -> np.ndarray:
+    """Points as an (n, 3) float array, one alone as one row; what is wrong with one is told by its row."""
+    points = reals(name, value, POINTS)
+    points = points[None] if points.shape == (3,) else points
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise ValueError(f"{name} of shape {points.shape}: must be {POINTS}")
+    check_rows(name, points, np.isfinite(points).all(axis=1), "must be finite coordinates in metres")
+    return points
+
+
+def check_rows(name: str, points: np.ndarray, good: np.ndarray, what: str) -> None:
+    """Raise ValueError, with the first of them, unless all rows of points are good."""
+    if not good.all():
+        which, more = int(np.argmin(good)), int(np.sum(~good)) - 1
+        also = f"; {more} more rows are so" if more > 1 else "; one more row is so" if more else ""
+        raise ValueError(f"{name}[{which}] = {points[which].tolist()}: {what}{also}")
 
 
 def one_line(error: Exception) -> str:

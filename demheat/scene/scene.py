@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import PurePath
 from typing import Any, ClassVar
 
 import numpy as np
@@ -374,7 +375,9 @@ class Scene:
 def check_scene(scene, name="scene") -> None:
     """Raise ValueError unless a value is a Scene."""
     if not isinstance(scene, Scene):
-        raise ValueError(f"{name} = {scene!r}: must be a Scene")
+        file = isinstance(scene, str | PurePath) and PurePath(scene).suffix == ".toml"
+        read = f"; demheat.io.scenes.read({str(scene)!r}) makes one of a file" if file else ""
+        raise ValueError(f"{name} = {scene!r}: must be a Scene{read}")
 
 
 def _plain(load):

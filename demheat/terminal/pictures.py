@@ -110,7 +110,7 @@ def plot_comparison(scene, entries, bounds, temperature=None):
     panel.set_xlim(least, most)
     panel.locator_params(axis="x", nbins=5)
     panel.set_yticks(range(len(entries)), labels=[name for name, *_ in entries])
-    panel.set_ylim(len(entries) - 0.5, -0.5)
+    panel.set_ylim(max(len(entries), 1) - 0.5, -0.5)
     panel.set_xlabel("effective conductivity, W/(m K)")
     if bounds:
         panel.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False, fontsize="small", title="bounds")

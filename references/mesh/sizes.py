@@ -29,6 +29,7 @@ NARROWEST = 1e-6
 # Of the longest edge: radius of a sphere. gmsh misplaces elements in spheres of 1e-6, and is lost in much smaller ones.
 SMALLEST = 3e-6
 _WHY = "the cusp between touching surfaces has no valid elements; leave a gap or let them overlap clearly"
+_SMALLER = "; spheres of 0.99 times their radii do (radius_factor = 0.99 of a file of them)"
 # Of the longest edge. Coordinates closer than this are one plane: rounding of what the user typed.
 SAME = 1e-10
 # Edge length on a small sphere over its radius; in a gap, to a distance of width = sqrt(gap radius), over that width;
@@ -151,7 +152,9 @@ def _pairs(scene, centers, radii, size):
     inside = distance < radii[outer]
     gap = np.where(inside, radii[outer] - radii[inner] - distance, distance - radii[outer] - radii[inner])
     for i in np.flatnonzero(gap < NARROWEST * max(scene.size)):
-        raise NotImplementedError(f"spheres at {centers[outer[i]]} and {centers[inner[i]]} touch: {_WHY}")
+        # One within another would come closer to its surface.
+        more = "" if inside[i] else _SMALLER
+        raise NotImplementedError(f"spheres at {centers[outer[i]]} and {centers[inner[i]]} touch: {_WHY}{more}")
     # Concentric spheres have no narrowest point; their shell counts instead.
     off = distance > 0
     along = (radii[outer] + np.where(inside, -1, 1) * gap / 2)[off] / distance[off]

@@ -100,7 +100,8 @@ def _cut_spheres(spheres, resistance, axis, change, spacing):
     order = [a for a in range(3) if a != axis] + [axis]
     view = np.moveaxis(resistance, axis, 2)
     for block in windows(spheres, resistance.shape, spacing, whole=True):
-        center, radius = block.center[:, order], block.radius
+        # Columns that are picked lie column by column: kernels would be compiled for that, too.
+        center, radius = np.ascontiguousarray(block.center[:, order]), block.radius
         kernels.cut_links_by_spheres(view, change[block.number], center, radius, spacing[order])
 
 

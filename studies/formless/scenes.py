@@ -20,6 +20,8 @@ RADIUS = 0.15
 # Of the knot, in edges: its ring, how far it winds about that, its tube; parts along and around.
 KNOT = {"ring": 0.26, "winding": 0.11, "tube": 0.05, "along": 192, "around": 16}
 BLOCKS = 4
+# Points along the trefoil of the round tube: its distances are right to 1e-5 of an edge.
+ROUND = 3000
 
 
 def primitive(x, y, z):
@@ -83,11 +85,16 @@ def _overlapping(fraction):
     return lambda points: tree.query(points / EDGE % 1.0)[0] - RADIUS
 
 
+def _trefoil(parts):
+    """Angles of so many points along a trefoil, and these about its middle, in edges."""
+    t = 2 * np.pi * np.arange(parts) / parts
+    out = KNOT["ring"] + KNOT["winding"] * np.cos(3 * t)
+    return t, np.column_stack([out * np.cos(2 * t), out * np.sin(2 * t), KNOT["winding"] * np.sin(3 * t)])
+
+
 def knot():
     """Vertices, in edges, and triangles of a tube along a trefoil."""
-    t = 2 * np.pi * np.arange(KNOT["along"]) / KNOT["along"]
-    out = KNOT["ring"] + KNOT["winding"] * np.cos(3 * t)
-    line = np.column_stack([out * np.cos(2 * t), out * np.sin(2 * t), KNOT["winding"] * np.sin(3 * t)])
+    t, line = _trefoil(KNOT["along"])
     along = np.roll(line, -1, axis=0) - np.roll(line, 1, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     # Across the line, away from the ring it winds about: a frame that closes.
@@ -105,6 +112,15 @@ def knot():
     return points, np.concatenate([half.reshape(-1, 3) for half in halves])
 
 
+def _round():
+    """Distance to a round tube along the trefoil, of the cross section of that of triangles."""
+    from scipy.spatial import cKDTree
+
+    tree, n = cKDTree(_trefoil(ROUND)[1] + 0.5), KNOT["around"]
+    tube = KNOT["tube"] * math.sqrt(n / (2 * math.pi) * math.sin(2 * math.pi / n))
+    return lambda points: tree.query(points / EDGE)[0] - tube
+
+
 def made(part, contrast, fraction):
     """The scene of a part."""
     material = scaled(HADDAD, contrast)
@@ -119,4 +135,12 @@ def made(part, contrast, fraction):
     else:
         function = _overlapping(fraction) if part == "overlapping spheres" else _below(part, fraction)
         shape = LevelSet(function, ((0.0,) * 3, (EDGE,) * 3), material, periodic=True)
+    return Scene((EDGE,) * 3, HADDAD, [shape], gradient=ALONG_X)
+
+
+def walked(part, contrast, fraction):
+    """The same scene for walkers, who take longer to ask triangles than to walk: the knot is a round tube there."""
+    if part != "knot":
+        return made(part, contrast, fraction)
+    shape = LevelSet(_round(), ((0.0,) * 3, (EDGE,) * 3), scaled(HADDAD, contrast))
     return Scene((EDGE,) * 3, HADDAD, [shape], gradient=ALONG_X)

@@ -127,34 +127,35 @@ def warm_up(name, scene, method, **knobs):
 
 def claims(df):
     """What is known is what the files say; the limits of errors were set before the rows were seen."""
-    from studies.sphere_benchmark.means import all_claims
+    from studies.sphere_benchmark.means import all_claims, whole
 
-    return all_claims(df)
+    return all_claims(whole(df))
 
 
 def table(df):
     """|error| in % by scene, each method at its finest; "-" refused or not asked, "!" failed.
 
-    `known` is the value of the file, W/(m K); where it is empty temperatures are asked for. Last come relations.
+    `known` is the value of the file, W/(m K), empty where temperatures are asked for. Last come relations.
     """
-    from studies.sphere_benchmark import tables
+    from studies.sphere_benchmark import means, tables
 
-    return tables.by_scene(df)
+    return tables.by_scene(means.whole(df))
 
 
 def notes(df):
     """Over all scenes: how many each method answers, its median and worst error, what it costs."""
     from studies.harness.table import markdown
-    from studies.sphere_benchmark import tables
+    from studies.sphere_benchmark import means, tables
 
     return [
         "Over the scenes that each has, at each resolution; coarse ones are of fewer scenes:",
-        markdown(tables.by_method(df)),
+        markdown(tables.by_method(means.whole(df))),
     ]
 
 
 def plot(df):
     """Every method's errors against its costs, and how many scenes it answers to a given error."""
     from studies.sphere_benchmark.figure import draw
+    from studies.sphere_benchmark.means import whole
 
-    return draw(df)
+    return draw(whole(df))

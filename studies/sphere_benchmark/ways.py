@@ -9,6 +9,7 @@ on the standard error says why.
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import json
 import math
@@ -64,12 +65,13 @@ def knobs_of(method: str) -> list[dict]:
 
 
 def warm_up(method: str, step: int) -> None:
-    """Have a module load and compile what it needs; a program pays for its start each time."""
+    """Have a module load and compile what it needs; a program pays for its start each time.
+
+    Whatever goes wrong with that scene says nothing of the row's own, which tells of itself.
+    """
     if not _program(method):
-        try:
+        with contextlib.suppress(Exception):
             guest(method, step)(benchmark.read(WARM))
-        except NotImplementedError:
-            pass
 
 
 def _program(method):

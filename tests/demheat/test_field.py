@@ -50,3 +50,21 @@ def test_samples_are_made_once_and_only_when_asked_for():
     assert not calls
     assert made.samples is made.samples
     assert len(calls) == 1
+
+
+@pytest.mark.parametrize(
+    ("bad", "told"),
+    [
+        ({3: np.nan}, r"^points\[3\] = \[nan, .*: must be finite coordinates in metres$"),
+        ({3: np.inf, 1: np.nan}, r"^points\[1\] = .* in metres; one more row is so$"),
+        ({2: 0.2}, r"^points\[2\] = \[0.2, .*: lies outside the box with walls, 0 to \(0.1, 0.2, 0.4\)$"),
+        ({2: -0.2, 0: 1.0, 4: 1.0}, r"^points\[0\] = .*\); 2 more rows are so$"),
+    ],
+)
+def test_a_point_that_is_none_is_told_by_its_row(bad, told):
+    scene = Scene(BOX, Material(1.0), walls={"z-": 25.0, "z+": 35.0})
+    made = Field(scene, np.zeros(3), np.ones(1), lambda: None, lambda points: None, None, slack=(1.0, np.inf))
+    points = np.full((5, 3), 0.05)
+    points[list(bad), 0] = list(bad.values())
+    with pytest.raises(ValueError, match=told):
+        made.temperature_at(points)

@@ -19,7 +19,10 @@ from studies.harness.tolerance import moved
 HERE = Path(__file__).parent
 STORED = provenance.ROOT / "results"
 with (HERE / "replayed.csv").open(newline="", encoding="utf-8") as file:
-    CHOSEN = [(row["study"], row["case"]) for row in csv.DictReader(file)]
+    COSTS = {(row["study"], row["case"]): float(row["cpu_s"]) for row in csv.DictReader(file)}
+CHOSEN = list(COSTS)
+# CPU-seconds from which a row is for `make test-slow`.
+MOST = 5.0
 EXECUTED = set((HERE / "executed.txt").read_text(encoding="utf-8").split())
 # What a case says of the code that makes its row.
 KINDS = ("name", "method", "law", "integrator", "scheme", "rule")
@@ -34,7 +37,7 @@ BODIES = (
 )
 NARROW = "asked in gaps so narrow that rows take seconds: by all degrees, in tests of its own"
 FORMS = "no study asks for it: held against limits and other forms by tests of its own"
-WALKS = "no study asks for it yet: held against exact values by tests of its own"
+WALKS = "rows of walks take half a minute: held against exact values by tests of its own"
 CROWDS = "asked where spheres are many or walls cut them, which quick rows do not mesh: tests of its own"
 INLINED = "compiled into kernels that rows do execute, and called by nothing else"
 SHIPPED = "made the tiles that are shipped: a test makes one again"
@@ -98,7 +101,11 @@ NO_ROWS = {
 
 # Coarse packings may not resolve every gap of a random dispersion.
 @pytest.mark.filterwarnings("ignore:.*do not fit into gaps:UserWarning", "ignore:gaps beside inclusions:UserWarning")
-@pytest.mark.parametrize(("name", "key"), CHOSEN, ids=lambda word: word[:60])
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [pytest.param(*pair, marks=pytest.mark.slow) if COSTS[pair] >= MOST else pair for pair in CHOSEN],
+    ids=lambda word: word[:60],
+)
 def test_a_stored_row_is_found_again(name, key):
     study = runner.load(name)
     case, rows = runner.find_case(study, key), store.read_rows(STORED / f"{name}.csv")

@@ -1,6 +1,7 @@
 """A method that is not ours on the scenes of the benchmark: as a module, a number, a program; its rows and refusals."""
 
 import json
+import re
 import sys
 from pathlib import Path
 
@@ -99,6 +100,25 @@ class Guess:
 def solve(scene, guess=1.0):
     return Guess(guess)
 """
+
+
+def test_a_module_that_fails_everywhere_says_why_and_has_its_table(tmp_path, monkeypatch):
+    """Of each row its own reason, not that of the scene on which it is warmed up; no row has anything that is known."""
+    text = "def solve(scene):\n    raise ValueError(f'{len(scene.inclusions)} of {type(scene.inclusions[0]).__name__}')"
+    name = _module(tmp_path, monkeypatch, "fails_everywhere", text)
+    cases = [case for case in guests(name, quick=True) if case["scene"] != "slab-step"]
+    made = {row["case"]: row for row in (runner.compute_row(STUDY, case) for case in cases)}
+    notes = {row["scene"]: row["note"] for row in made.values()}
+    # Warmed up on two layers.
+    assert (
+        notes["sc-third-s10"] == "ValueError in solve: 1 of Sphere"
+        and notes["relation scaled"] == "ValueError in solve: 12 of Sphere"
+    )
+    store.add_rows(tmp_path / "sphere_benchmark.csv", made, list(made))
+    claims, page = table.render(STUDY, tmp_path / "sphere_benchmark.csv")
+    # The file's value, as rows that failed have none; and each of the page's parts could be made.
+    assert re.search(r"\| sc-third-s10 +\| 1.3957348 +\| .* ! +\|", page)
+    assert [claim.sentence for claim in claims if claim.ok is False] == ["Rows that failed or ran out of time"]
 
 
 def test_a_program_is_not_told_what_is_known_and_may_fail(tmp_path):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,9 +13,11 @@ from demheat.declared import all_methods
 from demheat.io.scenes.scene_table import scene_of
 from demheat.io.scenes.source import Source, read_source
 from demheat.io.scenes.table import Table
-from demheat.io.scenes.units import LENGTH, PLAIN
+from demheat.io.scenes.units import LENGTH, PLAIN, scaled
 from demheat.io.words import as_toml, nearest
 from demheat.scene import Scene
+
+PER_CENT = re.compile(r"\s*(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?|\.\d+)\s*%\s*", re.ASCII)
 
 
 class SceneFile(NamedTuple):
@@ -94,10 +99,20 @@ def read_file(path) -> SceneFile:
     table = Table(source, (), source.values)
     scene = scene_of(source, table)
     methods = _methods(table)
-    accuracy = table.number("accuracy", PLAIN)
+    return SceneFile(source.path, scene, methods, _accuracy(table), source)
+
+
+def _accuracy(table):
+    """A part, or text of per cent."""
+    value = table.values.get("accuracy")
+    if isinstance(value, str) and (found := PER_CENT.fullmatch(value)):
+        accuracy = scaled(float(found[1]), Fraction(1, 100))
+    else:
+        accuracy = table.number("accuracy", PLAIN) if not isinstance(value, str) else math.nan
     if accuracy is not None and not 1e-9 <= accuracy < 1:
-        raise table.error("accuracy", f" = {as_toml(accuracy)}: must be a number from 1e-9 to below 1")
-    return SceneFile(source.path, scene, methods, accuracy, source)
+        told = 'must be a number from 1e-9 to below 1, as 0.01, or text of per cent, as "1 %"'
+        raise table.error("accuracy", f" = {as_toml(value)}: {told}")
+    return accuracy
 
 
 def _methods(table):
@@ -105,6 +120,8 @@ def _methods(table):
     solve = table.table("solve", {})
     methods = {}
     for name in solve.values:
+        if name in ("method", "methods"):
+            raise solve.error(name, ": each method has a table of its own, as [solve.fft]; it may be empty")
         if name not in all_methods():
             near = nearest(name, all_methods()) or f"; must be one of {', '.join(all_methods())}"
             raise solve.error(name, f": no such method{near}")

@@ -5,13 +5,13 @@ Shapes say what of them is stored (`Shape.stored`); a new source adds a line to 
 
 from __future__ import annotations
 
-import re
 from dataclasses import MISSING, fields
 from functools import partial
-from typing import NamedTuple
 
 from demheat.io.scenes.image_table import image_of
 from demheat.io.scenes.materials import made_material
+from demheat.io.scenes.placed import Placed, placed_error
+from demheat.io.scenes.shape_names import meant
 from demheat.io.scenes.source import Source
 from demheat.io.scenes.spheres import spheres_of
 from demheat.io.scenes.table import Table
@@ -87,14 +87,6 @@ KEYS = {"size": LENGTH, "gradient": GRADIENT, "initial": TEMPERATURE} | dict.fro
 )
 # What an image is itself.
 IMAGED = ("size", "matrix", "inclusions", "domain")
-NUMBERED = re.compile(r"(?:Scene\.)?inclusions\[(\d+)\](?:(?: and |, | is hidden by inclusions)\[(\d+)\])?")
-
-
-class Placed(NamedTuple):
-    """An inclusion and where it stands, for messages: "scene.toml:12: inclusions[0]"."""
-
-    shape: object
-    place: str
 
 
 def scene_of(source: Source, table: Table) -> Scene:
@@ -127,7 +119,7 @@ def _made_scene(table, placed, make):
     except ValueError as error:
         if "walls" in table.values and table.keys["gradient"] is not None:
             raise table.error(table.keys["gradient"], f": {error}") from None
-        raise _placed_error(table, placed, error) from None
+        raise placed_error(table, placed, error) from None
 
 
 def _imaged(table, materials):
@@ -138,23 +130,6 @@ def _imaged(table, materials):
             raise table.error(key, ": with an image, which has it itself; must be left out")
     image = image_of(table, materials)
     return _made_scene(table, [], partial(Scene.of_image, image, **_loaded(table)))
-
-
-def _placed_error(table, placed, error):
-    """The error of a scene as one of the file: of an inclusion, by where that stands, or of a key."""
-    found = NUMBERED.match(str(error))
-    if not found:
-        return table.blamed(error)
-    first, *others = (placed[int(number)].place for number in found.groups() if number)
-    told = str(error)[found.end() :].lstrip(": ")
-    if others:
-        own, other = first.rpartition(", ")[0], others[0]
-        # Of the same entry of the file its place in the table is enough.
-        other = other.removeprefix(f"{own}, ") if own else other
-        told = f"{found[0].removeprefix('Scene.')} {told} (the other stands in {other})"
-        if "overlap partially" in told and any(", " in place for place in (first, *others)):
-            told += "; radius_factor = 0.99 or join = true may mend it"
-    return ValueError(f"{first}: {told}")
 
 
 def _materials(table):
@@ -187,7 +162,8 @@ def _inclusions(table, materials, size):
         elif "file" in each.values:
             default = _material(each, "material", materials, None)
             spheres = spheres_of(each, materials, default, size)
-            placed += [Placed(sphere, f"{place}, {where}") for sphere, where in spheres]
+            factor = each.values.get("radius_factor", 1.0)
+            placed += [Placed(sphere, f"{place}, {where}", factor) for sphere, where in spheres]
         else:
             placed.append(Placed(_parts(each, "shape", SHAPES, materials), place))
     return placed
@@ -209,7 +185,7 @@ def _surface(table, materials):
 
 def _parts(table, key, kinds, materials, material=None):
     """A shape or a source of a table: its kind, then what that is made of; of a union members of its own material."""
-    kind = kinds[table.text(key, ..., among=tuple(kinds))]
+    kind = kinds[_kind(table, key, kinds)]
     words = STORED[kind] if kinds is SOURCES else {**kind.stored, "resistance": "resistance"}
     names = {name: (FIELDS[word] or (PLAIN,))[0] for name, word in words.items()}
     table.only({key: PLAIN, **names} | ({"material": PLAIN} if kinds is SHAPES else {}))
@@ -220,6 +196,16 @@ def _parts(table, key, kinds, materials, material=None):
     for name, word in words.items():
         values[name] = _read(table, name, word, None if name in optional else ..., material)
     return table.made(kind, values)
+
+
+def _kind(table, key, kinds):
+    """The name of a shape or a source; of shapes a body by the file of its surface is one, too."""
+    known = tuple(kinds) if kinds is not SHAPES else (*kinds, SurfaceMesh.kind)
+    if key not in table.values:
+        listed = ", ".join(map(repr, known))
+        also = ", or file, of a table of spheres" if kinds is SHAPES else ""
+        raise table.error(None, f": {key} is missing; must be one of {listed}{also}")
+    return table.text(key, ..., among=known, hint=meant if kinds is not SOURCES else nearest)
 
 
 def _read(table, name, word, default, material):

@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from fractions import Fraction
-
-from demheat.io.scenes.source import text_of
+from demheat.io.scenes.shape_names import no_spheres
+from demheat.io.scenes.sphere_tables import UNITS, read_table
 from demheat.io.scenes.units import LENGTH, PLAIN, RESISTANCE, factor_of, scaled
 from demheat.io.words import as_toml, nearest, nearest_file
-from demheat.runtime.limits import free_memory
 from demheat.runtime.paths import checked_path
 from demheat.scene import Sphere, Union
 
 TABLES = (".csv", ".tsv", ".txt")
-COLUMNS = ("x", "y", "z", "radius", "diameter", "material")
 KEYS = dict.fromkeys(("file", "unit", "material", "radius_factor", "step", "join"), PLAIN)
 KEYS |= {"offset": LENGTH, "resistance": RESISTANCE}
-UNITS = tuple(LENGTH.suffixes)
-# Bytes of memory that a byte of a table takes as rows of text and spheres; what is always read.
-OBJECTS, ALWAYS = 30, 2**24
 # Sides of a packing's box and the scene's differ by no more than this part: rounding of text in files.
 SAME = 1e-6
 
@@ -45,9 +37,11 @@ def spheres_of(table, materials, default, size) -> list[tuple[Sphere | Union, st
     if tabular and step is not None:
         raise table.error("step", f" = {step}: a table has one set of spheres; must be left out")
     _check_there(table, path)
-    rows = _rows(path, factor) if tabular else _packed(table, path, factor, step, size)
-    if tabular and _is_cell(table):
-        rows = _within(rows, offset, size)
+    if tabular:
+        rows, read_in = read_table(path, unit)
+        rows = _within(rows, offset, size, read_in, largest=max(size) / shrunk, periodic=_is_cell(table))
+    else:
+        rows = _packed(table, path, factor, step, size)
     join, spheres = (
         table.value("join", bool, "true or false", False),
         _made(table, rows, materials, default, offset, shrunk),
@@ -64,20 +58,29 @@ def _is_cell(table):
     return any(key.startswith("gradient") for key in table.source.values)
 
 
-def _within(rows, offset, size):
-    """The same rows; centres outside of a periodic cell, which would come in again elsewhere, are refused."""
+def _within(rows, offset, size, read_in, *, largest, periodic):
+    """The same rows; what is far from the box, and in a periodic cell a centre outside of it, is refused.
+
+    That would come in again elsewhere, and mostly has another unit than it was read in.
+    """
     for place, numbers, name in rows:
-        center = [c + d for c, d in zip(numbers, offset, strict=False)]
-        if any(c < -SAME * side or c > (1 + SAME) * side for c, side in zip(center, size, strict=True)):
+        center, radius = [c + d for c, d in zip(numbers, offset, strict=False)], numbers[3]
+        room = SAME * max(size) if periodic else max(radius, 0.0)
+        if any(c < -room or c > side + room for c, side in zip(center, size, strict=True)):
             cell = " x ".join(f"{side:.6g}" for side in size)
             raise ValueError(
-                f"{place}: x y z = {', '.join(f'{c:.6g}' for c in center)} m: lies outside the periodic cell, 0 to "
-                f"{cell} m; must lie in it, is the unit right?"
+                f"{place}: x y z = {', '.join(f'{c:.6g}' for c in center)} m: lies outside the "
+                f"{'periodic cell' if periodic else 'box'}, 0 to {cell} m; must lie in it; {read_in(center, size)}"
             )
+        if radius > largest:
+            told = read_in([radius], size)
+            raise ValueError(f"{place}: radius = {radius:.6g} m: must be at most {largest:.6g} m, as the box; {told}")
         yield place, numbers, name
 
 
 def _check_there(table, path):
+    if other := no_spheres(path):
+        raise table.error("file", f" = {as_toml(table.values['file'])}: {other}")
     if not path.exists():
         told = f" = {as_toml(table.values['file'])}: there is no such file{nearest_file(path)}"
         raise table.error("file", told)
@@ -128,69 +131,3 @@ def _packed(table, path, factor, step, size):
 def _placed(path, packing, factor):
     for k, (center, radius) in enumerate(zip(packing.centers.tolist(), packing.radii.tolist(), strict=True)):
         yield f"{path}, sphere {k + 1}", [scaled(value, factor) for value in (*center, radius)], None
-
-
-def _rows(path, factor):
-    """Rows of a table with a line of names."""
-    text = text_of(path, max(ALWAYS, int(min(free_memory() / OBJECTS, 2**62))))
-    lines = [(k, line) for k, line in enumerate(text.splitlines(), start=1) if line.strip() and line.lstrip()[0] != "#"]
-    if not lines:
-        raise ValueError(f"{path}:1: is empty; must begin with a line of names: x,y,z,radius")
-    mark = next((mark for mark in ";\t," if mark in lines[0][1]), ",")
-    names, *_ = csv.reader([lines[0][1]], delimiter=mark)
-    columns = _columns(path, lines[0][0], [name.strip() for name in names], factor)
-    if len(lines) == 1:
-        raise ValueError(f"{path}:{lines[0][0]}: has names and no rows; must have a row for each sphere")
-    reader = csv.reader(io.StringIO("\n".join(line for _, line in lines[1:])), delimiter=mark)
-    return _parsed(path, [number for number, _ in lines[1:]], reader, columns, len(names))
-
-
-def _columns(path, line, names, factor):
-    """Where each column stands and its unit, {name: (number, factor)}."""
-    known = {name: (name, factor) for name in COLUMNS}
-    known |= {f"{name}_{unit}": (name, factor_of(unit, LENGTH)[0]) for name in COLUMNS[:5] for unit in UNITS}
-    found = {}
-    for k, name in enumerate(names):
-        if name not in known:
-            # What is no column of ours may stay, unless it looks like a slip.
-            if near := nearest(name, known):
-                raise ValueError(f"{path}:{line}: no such column, {name!r}{near}")
-            continue
-        column, own = known[name]
-        if column in found:
-            raise ValueError(f"{path}:{line}: column {name!r} is {column} once more; must be one of them")
-        found[column] = (k, own)
-    both = "radius" in found, "diameter" in found
-    lacking = [name for name in "xyz" if name not in found] + ([] if any(both) else ["radius"])
-    if lacking:
-        raise ValueError(f"{path}:{line}: columns {', '.join(names)!r}: must have {', '.join(lacking)} among them")
-    if all(both):
-        raise ValueError(f"{path}:{line}: columns radius and diameter; must be one of them")
-    return found
-
-
-def _parsed(path, numbers, reader, columns, width):
-    half = Fraction(1, 2) if "diameter" in columns else 1
-    size = "diameter" if "diameter" in columns else "radius"
-    for number, row in zip(numbers, reader, strict=False):
-        place = f"{path}:{number}"
-        if len(row) != width:
-            raise ValueError(f"{place}: {len(row)} values; must be {width}, as there are names")
-        values = []
-        for name in ("x", "y", "z", size):
-            k, factor = columns[name]
-            values.append(_number(place, name, row[k], factor))
-        values[3] = values[3] * float(half)
-        name = row[columns["material"][0]].strip() if "material" in columns else None
-        yield place, values, name
-
-
-def _number(place, name, text, factor):
-    try:
-        # Python also takes underscores, and digits of all scripts.
-        if "_" in text or not text.isascii():
-            raise ValueError
-        value = float(text)
-    except ValueError:
-        raise ValueError(f"{place}: {name} = {text.strip()!r}: must be a number with a decimal point") from None
-    return scaled(value, factor) if factor != 1 else value

@@ -13,6 +13,12 @@ from demheat.io.words import as_toml, nearest
 SAID = re.compile(r"\w+\.(?P<field>\w+)(?P<part>\[[^\]]*\])?(?: = (?:\{.*?\}|.*?))?: (?P<what>.*)", re.DOTALL)
 
 
+# Keys as others call them; keys of a file, which are read as of the table above them.
+ALSO = {"diameter": "radius", "position": "center", "k": "conductivity", "lambda": "conductivity", "rho": "density"}
+ALSO |= {"cp": "heat_capacity"}
+TOP = ("size", "gradient", "matrix", "initial", "accuracy", "domain")
+
+
 class Table:
     """A table of a file."""
 
@@ -68,8 +74,8 @@ class Table:
             found.append(tuple(self._converted((key, i, j), *cell) for j, cell in cells))
         return tuple(found)
 
-    def text(self, name: str, default=None, *, among=None) -> str | None:
-        """A text."""
+    def text(self, name: str, default=None, *, among=None, hint=nearest) -> str | None:
+        """A text; `hint` says what may have been meant by one that is none of those it must be among."""
         key = self.needed(name) if default is ... else self.key(name)
         if key is None:
             return default
@@ -78,7 +84,7 @@ class Table:
             raise self.error(key, f" = {as_toml(value)}: must be text in quotes")
         if among is not None and value not in among:
             listed = ", ".join(map(repr, among))
-            raise self.error(key, f" = {as_toml(value)}: must be one of {listed}{nearest(value, among)}")
+            raise self.error(key, f" = {as_toml(value)}: must be one of {listed}{hint(value, among)}")
         return value
 
     def value(self, name: str, kind: type, words: str, default=None):
@@ -109,8 +115,18 @@ class Table:
         known = [f"{name}{end}" for name, quantity in names.items() for end in ("", *_ends(quantity))]
         for key in self.values:
             if key not in known:
-                near = nearest(key, known) or f"; must be one of {', '.join(names)}"
-                raise self.error(key, f": no such key here{near}")
+                raise self.error(key, f": no such key here{self._meant(key, known, names)}")
+
+    def _meant(self, key, known, names):
+        """What may have been meant by a key that is none of the table."""
+        name, _, end = key.partition("_")
+        other = ALSO.get(name, "")
+        if other in names:
+            there = f"{other}_{end}" if f"{other}_{end}" in known else other
+            return f"; did you mean {there!r}{', half of it' if name == 'diameter' else ''}?"
+        if self.path and name in TOP:
+            return "; a key of the file itself must stand above its first table, [...]"
+        return nearest(key, known) or f"; must be one of {', '.join(names)}"
 
     def error(self, key, what: str) -> ValueError:
         """The error to raise about a key, a path below the table, or (None) the table."""

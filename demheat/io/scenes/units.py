@@ -57,6 +57,8 @@ def read_quantity(text: str, quantity: Quantity) -> tuple[float, str]:
     found = NUMBER.fullmatch(text)
     if not found or not found[2].strip():
         raise ValueError(f"must be a number, or text of a number and a unit such as '3 {quantity.unit}'")
+    if re.match(r",\d", found[2]):
+        raise ValueError(f"must have a decimal point, as {found[1]}.{found[2][1:]}")
     factor, scale = factor_of(found[2].strip(), quantity)
     return scaled(float(found[1]), factor), scale
 

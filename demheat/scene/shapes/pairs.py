@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import product
 from typing import NamedTuple
@@ -12,6 +13,9 @@ from demheat.scene.shapes.base import TOUCH, Shape, nearest
 from demheat.scene.shapes.bins import ball_bins, candidates
 from demheat.scene.shapes.holders import bounding_balls
 from demheat.scene.shapes.parted import nested, parted
+
+# Of a thousand: what touches is taken.
+ROUNDING = 1e-6
 
 
 class _Cell(NamedTuple):
@@ -37,8 +41,9 @@ def check_pairs(shapes: Sequence[Shape], size: Sequence[float], *, periodic: boo
     box = np.array(size)
     cell = _Cell(box, box if periodic else None, TOUCH * box.max())
     centers, radii = bounding_balls(shapes)
-    for i, j in _close(shapes, centers, radii, cell):
-        _check_pair(shapes, i, j, cell)
+    close = _close(shapes, centers, radii, cell)
+    for i, j in close:
+        _check_pair(shapes, i, j, cell, lambda: _shrunk(shapes, centers, radii, close, cell))
 
 
 def _close(shapes, centers, radii, cell):
@@ -61,7 +66,20 @@ def _close(shapes, centers, radii, cell):
     return np.unique(pairs[:, pairs[0] < pairs[1]], axis=1).T.tolist()
 
 
-def _check_pair(shapes, i, j, cell):
+def _shrunk(shapes, centers, radii, close, cell):
+    """What to add where smaller spheres would all be disjoint or nested: by how much smaller, to three digits."""
+    balls = np.array([shape.fills_ball for shape in shapes])
+    i, j = np.array([pair for pair in close if balls[pair].all()]).reshape(-1, 2).T
+    apart = np.linalg.norm(nearest(centers[i] - centers[j], cell.period), axis=1)
+    sums, differences = radii[i] + radii[j], np.abs(radii[i] - radii[j])
+    inside = apart <= differences + cell.tolerance
+    factor = math.floor(1000 * np.min((apart / sums)[~inside], initial=1.0) + ROUNDING) / 1000
+    # What lies in another one moves closer to its surface.
+    good = 0 < factor < 1 and np.all(apart[inside] <= factor * differences[inside])
+    return f"; spheres of {factor:g} times their radii would be" if good else ""
+
+
+def _check_pair(shapes, i, j, cell, mended):
     first, second = shapes[i], shapes[j]
     if _crossed(first, second):
         raise ValueError(f"Scene.inclusions[{i}], [{j}]: layers along different axes cross each other")
@@ -72,7 +90,7 @@ def _check_pair(shapes, i, j, cell):
     if not _holds_all(first, second, cell):
         raise ValueError(
             f"Scene.inclusions[{i}] and [{j}] overlap partially{_unsure(first, second)}: inclusions must be disjoint, "
-            "touching or fully nested"
+            f"touching or fully nested{mended() if first.fills_ball and second.fills_ball else ''}"
         )
 
 

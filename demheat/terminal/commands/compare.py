@@ -23,7 +23,7 @@ from demheat.terminal.commands import rows
 from demheat.terminal.commands.answers import answered
 from demheat.terminal.commands.bounds import bounds_of
 from demheat.terminal.commands.knobs import Asked, asked
-from demheat.terminal.commands.words import aligned, names, scene_line, spread, typed
+from demheat.terminal.commands.words import aligned, scene_line, spread, time_was_over, typed
 from demheat.terminal.slices import on_plane
 
 OUT = "demheat-out"
@@ -31,13 +31,15 @@ OUT = "demheat-out"
 ROUNDING = 1e-6
 # Pixels along the longer side of the slice in the picture.
 PIXELS = 121
+# Of a note about a time that did not suffice, see `demheat.runtime.deadline`.
+OVER = "are over, in"
 # Bytes of the file of such a slice, unpacked: a scene of a hundred thousand spheres is 40 MB of text there.
 LARGEST = 2**27
 
 
 def run(file, options) -> int:
     """Compare, print and store; the exit status."""
-    chosen = names(options.methods) or (usual(everything=True) if options.all else None)
+    chosen = options.methods or (usual(everything=True) if options.all else None)
     wanted = asked(file, chosen, options.knob, default=usual())
     path = typed("--out", options.out or OUT, check_output) / f"{file.path.stem}.csv"
     print(f"{file.path}: {scene_line(file.scene)}", flush=True)
@@ -45,6 +47,9 @@ def run(file, options) -> int:
     made = compared(file.scene, wanted, path, **how)
     bounds = bounds_of(file.scene)
     print("\n" + table(made, bounds))
+    late = [each for each, row in zip(wanted, made, strict=True) if OVER in row["note"]]
+    if said := time_was_over(options.seconds, late, file.scene):
+        print(f"{said} Rows that are done stay, and the same command goes on with the others.")
     try:
         drawn = f"picture {picture(file.scene, made, bounds, path)}"
     except ImportError as error:

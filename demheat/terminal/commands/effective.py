@@ -10,7 +10,7 @@ import numpy as np
 from demheat.cheapest import effective
 from demheat.cheapest.ways import knobs_of
 from demheat.scene.inputs import one_line
-from demheat.terminal.commands.words import aligned, decimals, names, scene_line
+from demheat.terminal.commands.words import aligned, decimals, scene_line
 
 
 def run(file, options) -> int:
@@ -18,12 +18,12 @@ def run(file, options) -> int:
     accuracy = wanted_accuracy(file, options)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        found = effective(file.scene, accuracy=accuracy, method=names(options.methods), seconds=options.seconds)
+        found = effective(file.scene, accuracy=accuracy, method=options.methods, seconds=options.seconds)
     for each in dict.fromkeys(one_line(each.message) for each in caught if issubclass(each.category, UserWarning)):
         print(f"demheat: warning: {each}", file=sys.stderr)
     print(f"{file.path}: {scene_line(file.scene)}\n")
     print("\n".join(_tensor(found.tensor, (found.upper - found.lower) / 2)))
-    by = ", ".join(filter(None, (found.method, knobs_of(found), f"accuracy {found.accuracy:.2g}")))
+    by = ", ".join(filter(None, (found.method, knobs_of(found), f"within {100 * found.accuracy:.2g} %")))
     print(f"\nby {by} ({found.how})")
     print(f"cost {found.cost['wall_s']:.2g} s, {found.cost['cpu_s']:.2g} CPU-s")
     for line in (*found.saved, *found.passed):

@@ -11,6 +11,7 @@ from demheat.io.packings import SUFFIXES
 from demheat.io.scenes import units
 from demheat.io.scenes.spheres import TABLES
 from demheat.io.scenes.units import Quantity
+from demheat.io.surfaces import READ
 from demheat.runtime.extras import lacking
 from demheat.terminal.commands.knobs import known
 
@@ -74,6 +75,7 @@ def _formats():
     packings = [suffix for each in SUFFIXES.values() for suffix in each]
     lines = (
         ("spheres", f"{' '.join([*TABLES, *packings])}, [[inclusions]] file = ..."),
+        ("bodies", f'{" ".join(READ)}, [[inclusions]] shape = "surface mesh", file = ...'),
         ("images", f"{' '.join(READERS)}, [image] file = ..."),
         ("fields", f"{' '.join(WRITERS)}, solve --write"),
     )

@@ -35,7 +35,13 @@ material = "glass"
 # resistance = "1e-6 m2 K/W"          # of its surface
 
 # [[inclusions]]                      # spheres of a file: columns x_mm,y_mm,z_mm,radius_mm; or a dump of LAMMPS, ...
-# file = "beads.csv"
+# file = "beads.csv"                  # radius_factor = 0.99 or join = true where they overlap
+# material = "glass"
+
+# [[inclusions]]                      # a body by its surface, closed, of triangles
+# shape = "surface mesh"
+# file = "part.stl"                   # .ply, .obj, .msh
+# unit = "mm"                         # of its coordinates; offset_mm = [0.5, 0.5, 0.5] moves it
 # material = "glass"
 
 [walls]                               # the other four are insulated; or gradient_K_mm = [0, 1, 0] of a periodic cell

@@ -26,8 +26,6 @@ SCENES = Path(version.__file__).parents[1] / "benchmark" / "scenes"
 def run(options) -> int:
     """Judge, print and store; the exit status."""
     accuracy = ACCURACY if options.accuracy is None else options.accuracy
-    if not 0 < accuracy < 1:
-        raise ValueError(f"--accuracy {accuracy:g}: must be a part, above 0 and below 1")
     folder = typed("--out", options.out or OUT, check_output)
     files = [read_answers(path) for path in options.files]
     names = [each.program for each in files]
@@ -70,7 +68,7 @@ def summary(scores: list[Score]) -> str:
     """All answers in a line."""
     told = [score for score in scores if not score.refused]
     errors = np.abs([score.error for score in told])
-    said = [f"{len(told)} answers to {len({score.scene for score in told})} scenes"]
+    said = [f"{_counted(len(told), 'answer')} to {_counted(len({score.scene for score in told}), 'scene')}"]
     if len(told) < len(scores):
         said.append(f"{len(scores) - len(told)} refused")
     if told:
@@ -80,6 +78,10 @@ def summary(scores: list[Score]) -> str:
         said.append(f"{sum(intervals)} of {len(intervals)} intervals hold")
     broken = sum(bool(score.beyond) for score in told)
     return "; ".join([*said, f"{broken} beyond certain bounds"] if broken else said)
+
+
+def _counted(number, name):
+    return f"{number} {name}{'' if number == 1 else 's'}"
 
 
 def table(scores: list[Score]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from typing import NamedTuple
 
 from demheat.declared import all_methods, load
@@ -26,14 +27,22 @@ class Asked(NamedTuple):
         """Its name and knobs in words."""
         return " ".join([self.method.name, *(f"{name}={value}" for name, value in self.knobs.items())])
 
+    def coarser(self, scene) -> str:
+        """The option with which it costs less: half of the resolution, or the coarse one; empty if it has none."""
+        refined = self.method.resolution
+        if refined is None:
+            return ""
+        value = self.knobs.get(refined.knob)
+        if isinstance(value, int | float):
+            value = 2 * value if refined.metric else max(int(value) // 2, 1)
+        else:
+            value = self.method.at(self.method.coarse, max(scene.size))[refined.knob]
+        return f"--knob {self.method.name}.{refined.knob}={value:.4g}"
+
 
 def asked(file, names, words, *, default) -> list[Asked]:
     """Methods with their knobs."""
     chosen = list(names or file.methods or default)
-    for name in chosen:
-        if name not in all_methods():
-            near = nearest(name, all_methods()) or f"; must be one of {', '.join(all_methods())}"
-            raise ValueError(f"--method {name}: no such method{near}")
     knobs = {name: dict(file.methods.get(name, {})) for name in chosen}
     for name, own in knobs.items():
         for knob in own:
@@ -86,9 +95,16 @@ def _check(method, knob, error):
         raise error(f"no knob of {method.name}{near}")
 
 
+def _power(text):
+    """A whole number with a power of ten, as 1e5."""
+    if not re.fullmatch(r"[+-]?\d+[eE]\+?\d{1,2}", text, re.ASCII):
+        raise ValueError
+    return int(float(text))
+
+
 def _value(method, knob, text, word):
     """What a text means: a number, a flag, a length with its unit, or itself."""
-    for kind in (int, float):
+    for kind in (int, _power, float):
         try:
             return kind(text)
         except ValueError:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import re
 
 from demheat.io.words import nearest
+from demheat.terminal.commands.option_values import Methods, accuracy, seconds
 
 COMMANDS = {
     "init": "write a scene to begin with, in which comments say what else it may have",
@@ -17,12 +19,20 @@ COMMANDS = {
     "judge": "what answers of any program to the benchmark's scenes are worth: errors, intervals, costs, a leaderboard",
 }
 
-OPTIONS = ("--help", "--version", "--method", "--methods", "--knob", "--accuracy", "--no-interval", "--all", "--force")
-OPTIONS = (*OPTIONS, "--out", "--write", "--seconds", "--scenes")
+PART = ", as 0.01 or 1%%; default: "
+# What other programs call them.
+ALSO = {"--budget": "--seconds", "--time": "--seconds", "--timeout": "--seconds", "--limit": "--seconds"}
+ALSO |= {"--tolerance": "--accuracy", "--tol": "--accuracy", "--error": "--accuracy", "--output": "--out"}
+ALSO |= {"--solver": "--method", "--voxels": "--knob", "--particles": "--knob", "--size": "--knob"}
 
 
 class Parser(argparse.ArgumentParser):
     """A parser that says what is wrong in one line, with the nearest word that it knows."""
+
+    def __init__(self, *args, **knobs):
+        super().__init__(*args, **knobs)
+        # By their names, of a program that has such, and of each of them.
+        self.commands = {}
 
     def format_help(self):
         """With what is gathered from all of the package only when it is asked for."""
@@ -30,13 +40,35 @@ class Parser(argparse.ArgumentParser):
 
         return f"{super().format_help()}\n{told(self.prog.partition(' ')[2])}\n"
 
+    def parse_args(self, args=None, namespace=None):
+        """Of a command, what it does not know said with its own options."""
+        found, others = self.parse_known_args(args, namespace)
+        if others:
+            own = self.commands[found.command] if self.commands else self
+            own.error(f"unrecognized arguments: {' '.join(others)}")
+        return found
+
     def error(self, message):
         """Raise ValueError instead of printing how the command is used."""
-        for mark, words in (("unrecognized arguments: ", OPTIONS), ("invalid choice: ", COMMANDS)):
-            _, found, rest = message.partition(mark)
-            if found:
-                message += nearest(rest.split()[0].strip("'\"").partition("=")[0], words)
+        _, unknown, rest = message.partition("unrecognized arguments: ")
+        if unknown:
+            message += self._meant(rest.split()[0].partition("=")[0])
+        _, invalid, rest = message.partition("invalid choice: ")
+        if invalid:
+            word = rest.split()[0].strip("'\"")
+            first = f"; a command comes first, as `demheat solve {word}`" if word.endswith(".toml") else ""
+            message += first or nearest(word, COMMANDS)
+        # What `option_values` says names the option itself.
+        message = re.sub(r"^argument \S+: (?=--)", "", message)
         raise ValueError(f"{message}; {self.prog} --help tells more")
+
+    def _meant(self, word):
+        """What may have been meant by an option that is not known here."""
+        own = [option for option in self._option_string_actions if option.startswith("--")]
+        if ALSO.get(word) in own:
+            return f"; did you mean {ALSO[word]!r}?"
+        others = [name for name, other in self.commands.items() if word in other._option_string_actions]
+        return f"; only {', '.join(others)} has it" if others else nearest(word, own)
 
 
 def parser(version: str) -> argparse.ArgumentParser:
@@ -46,8 +78,10 @@ def parser(version: str) -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"demheat {version}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
+    top.commands = commands.choices
     for name, words in COMMANDS.items():
         command = commands.add_parser(name, help=words, description=words, allow_abbrev=False)
+        command.commands = commands.choices
         if name == "judge":
             _of_judge(command)
             continue
@@ -59,7 +93,7 @@ def parser(version: str) -> argparse.ArgumentParser:
 
 def _of_judge(command):
     command.add_argument("files", metavar="ANSWERS.json", nargs="+", help="of one program each, see docs/benchmark.md")
-    command.add_argument("--accuracy", type=float, metavar="PART", help="to which costs are compared; default: 1e-2")
+    command.add_argument("--accuracy", type=accuracy, metavar="PART", help=f"to which costs are compared{PART}1e-2")
     command.add_argument("--scenes", metavar="FOLDER", help="default: benchmark/scenes of the clone")
     command.add_argument("--out", metavar="FOLDER", help="for the page; default: demheat-out")
 
@@ -70,17 +104,18 @@ def _options(command, name):
         command.add_argument(
             *("--method", "--methods"),
             dest="methods",
-            action="append",
+            action=Methods,
             metavar="NAME",
             help="of a method" + (", again for more, or several with commas" if several else ""),
         )
     if several or name == "view":
         command.add_argument("--knob", action="append", default=[], metavar="NAME=VALUE", help="such as voxels=64")
     if name in ("effective", "recommend"):
-        command.add_argument("--accuracy", type=float, metavar="PART", help="default: the file's, or 1e-3")
+        help_ = f"of the answer{PART}the file's, or 1e-3"
+        command.add_argument("--accuracy", type=accuracy, metavar="PART", help=help_)
     if several or name == "effective":
         help_ = "that the command may take; what is done by then is told"
-        command.add_argument("--seconds", type=float, metavar="SECONDS", help=help_)
+        command.add_argument("--seconds", type=seconds, metavar="SECONDS", help=help_)
     if name in ("solve", "compare"):
         command.add_argument("--no-interval", action="store_true", help="spare the runs that tell the error")
     if name == "solve":

@@ -12,7 +12,7 @@ from demheat.terminal.commands.answers import Answer, answered
 from demheat.terminal.commands.bounds import bounds_of
 from demheat.terminal.commands.compare import usual
 from demheat.terminal.commands.knobs import asked
-from demheat.terminal.commands.words import assumed, names, scene_line, spread, typed
+from demheat.terminal.commands.words import assumed, scene_line, spread, time_was_over, typed
 from demheat.terminal.report import Content, kinds_of, page, values_of
 
 HEAD = ("method", "W/(m K)", "expected from", "to", "by", "wall s", "CPU s", "unknowns")
@@ -21,7 +21,7 @@ HEAD = ("method", "W/(m K)", "expected from", "to", "by", "wall s", "CPU s", "un
 def run(file, options) -> int:
     """Solve and write the page; the exit status."""
     path = typed("--out", options.out or f"{file.path.stem}.html", check_target)
-    wanted = asked(file, names(options.methods), options.knob, default=usual())
+    wanted = asked(file, options.methods, options.knob, default=usual())
     found, begun = [], time.monotonic()
     for each in wanted:
         print(f"{each.title} ...", file=sys.stderr, flush=True)
@@ -31,6 +31,8 @@ def run(file, options) -> int:
     with replaced(path) as part:
         part.write_text(page(_content(file, found)), encoding="utf-8")
     print(f"page {path}")
+    if said := time_was_over(options.seconds, [each for each, answer in found if answer.cut], file.scene):
+        print(f"demheat: {said}", file=sys.stderr)
     return 1 if any(answer.status in ("failed", "invalid", "stopped") for _, answer in found) else 0
 
 

@@ -86,15 +86,18 @@ def _score(program, given, table):
         score = score._replace(holds=holds, width=(given.upper - given.lower) / known.conductivity)
     if given.tensor is not None:
         apart = np.abs(given.tensor - given.tensor.T).max()
-        score = score._replace(asymmetry=float(apart / np.abs(given.tensor).max()))
+        # Of one that is nothing, 0.
+        score = score._replace(asymmetry=float(apart / (np.abs(given.tensor).max() or 1.0)))
     return score
 
 
 def _of_temperatures(given, known, scene):
     wanted = len(known.temperature)
     if given.temperatures is None or len(given.temperatures) != wanted:
-        found = "none" if given.temperatures is None else len(given.temperatures)
-        raise ValueError(f"scene {given.scene!r} asks for temperatures at its {wanted} points in order, not {found}")
+        found = "are none" if given.temperatures is None else f"are {len(given.temperatures)}"
+        raise ValueError(
+            f"scene {given.scene!r} asks for temperatures at its {wanted} points, in their order, and there {found}"
+        )
     span = span_of(scene, known.temperature)
     off = given.temperatures - known.temperature
     return {"error": float(off[np.argmax(np.abs(off))]) / span, "known_to": known.temperature_error / span}

@@ -10,12 +10,12 @@ from demheat.runtime.deadline import budget
 from demheat.runtime.paths import check_output, made_folder, replaced
 from demheat.terminal.commands.answers import answered
 from demheat.terminal.commands.knobs import asked
-from demheat.terminal.commands.words import costs, interval, names, scene_line, typed
+from demheat.terminal.commands.words import costs, interval, scene_line, time_was_over, typed
 
 
 def run(file, options) -> int:
     """Solve and print; the exit status."""
-    wanted = asked(file, names(options.methods), options.knob, default=("dem",))
+    wanted = asked(file, options.methods, options.knob, default=("dem",))
     if options.write and len(wanted) > 1:
         raise ValueError(f"--write {options.write}: of one method, and {len(wanted)} are asked for; must be with --out")
     for each in wanted if options.write else ():
@@ -24,16 +24,19 @@ def run(file, options) -> int:
         typed("--write", options.write, field_target)
     folder = typed("--out", options.out, check_output) if options.out else None
     print(f"{file.path}: {scene_line(file.scene)}")
-    worst, begun = 0, time.monotonic()
+    worst, late, begun = 0, [], time.monotonic()
     for each in wanted:
         with budget(options.seconds, begun=begun):
             found = answered(file.scene, each, interval=not options.no_interval)
+        late += [each] if found.cut else []
         worst = max(worst, _shown(each, found))
         if folder and found.field is not None:
             _stored(folder, each.method.name, found.field)
         if options.write and found.field is not None:
             found.field.write(options.write)
             print(f"  written       {options.write}", flush=True)
+    if said := time_was_over(options.seconds, late, file.scene):
+        print(f"demheat: {said}", file=sys.stderr)
     return worst
 
 

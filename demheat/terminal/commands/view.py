@@ -8,13 +8,15 @@ from demheat.runtime.paths import check_output, made_folder, replaced
 from demheat.terminal.commands.answers import answered
 from demheat.terminal.commands.compare import OUT
 from demheat.terminal.commands.knobs import asked
-from demheat.terminal.commands.words import names, typed
+from demheat.terminal.commands.words import typed
 
 
 def run(file, options) -> int:
     """Draw; the exit status."""
+    if options.knob and not options.methods:
+        raise ValueError(f"--knob {options.knob[0]}: no method is named; must be with --method")
     # Methods of the file are solved only if they are named: a picture of the scene costs nothing.
-    wanted = asked(file, names(options.methods), options.knob, default=()) if options.methods else []
+    wanted = asked(file, options.methods, options.knob, default=()) if options.methods else []
     folder = typed("--out", options.out or OUT, check_output)
     _saved(file.scene.plot(), folder / f"{file.path.stem}-scene.png")
     worst = 0

@@ -9,17 +9,22 @@ from pathlib import Path
 LENGTHS = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"))
 
 
-def names(words) -> list[str] | None:
-    """Names of methods from options, which may hold several with commas; None if there is none."""
-    return [name.strip() for word in words for name in word.split(",")] if words else None
-
-
 def typed(option: str, value, check):
     """What a check of a path makes of an option; its error names the option as it was typed."""
     try:
         return check(value)
     except ValueError as error:
         raise ValueError(f"{option} {value}: {str(error).removeprefix(f'path = {str(Path(value))!r}: ')}") from None
+
+
+def time_was_over(seconds: float | None, late, scene) -> str:
+    """What to do where the time was over before some methods were done; empty if all were."""
+    if not late or seconds is None:
+        return ""
+    coarser = next(filter(None, (each.coarser(scene) for each in late)), "")
+    sizes = f", or a coarser size, as {coarser}" if coarser else ""
+    names = ", ".join(each.method.name for each in late)
+    return f"The time was over before {names} got done: must be more, as --seconds {4 * seconds:g}{sizes}."
 
 
 def scene_line(scene) -> str:

@@ -128,7 +128,7 @@ def _figure(figures, name):
     held = io.BytesIO()
     figures[name].savefig(held, format="png", dpi=110)
     text = base64.b64encode(held.getvalue()).decode()
-    return f'<p><img alt="{escape(name)}" src="data:image/png;base64,{text}"></p>'
+    return f'<p class="figure"><img alt="{escape(name)}" src="data:image/png;base64,{text}"></p>'
 
 
 def _table(rows):

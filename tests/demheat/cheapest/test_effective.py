@@ -166,6 +166,7 @@ def test_recommendations_say_why():
 def test_the_fft_is_judged_by_the_rule_that_it_takes(contrast, rule):
     """Laminates, which it leaves at high contrast, would have needed 1800 CPU-s and 14 GB at contrast 1000."""
     scene = gallery.sphere_in_cube(contrast)
+    # A third of the voxels that 1e-3 needs, and the same rules.
     told = {way.method: way for way in recommend(scene, 2e-3).ways}["fft"]
     part = measures(loads_of(scene).parts[0])
     law = {"laminate": "fft"}.get(rule, f"fft-{rule}")
@@ -176,7 +177,8 @@ def test_the_fft_is_judged_by_the_rule_that_it_takes(contrast, rule):
     assert field.stats["rule"] == rule
     if contrast:  # what is said of pores is an upper end
         assert told.cpu_s < 2.0 and told.bytes < 2**26
-        assert_allclose(field.conductivity, exact.solve(scene).conductivity, rtol=2e-3)
+        # 3.4e-4 was found of either.
+        assert_allclose(field.conductivity, exact.solve(scene).conductivity, rtol=1e-3)
 
 
 def test_an_ellipsoid_that_conducts_well_is_no_case_for_a_large_machine():

@@ -22,6 +22,8 @@ def test_what_a_file_holds(tmp_path):
     found = read(tmp_path, FILE | {"answers": [*rows, {"scene": "sc-third-pore", "refused": "pores"}]})
     assert (found.program, found.version, found.method, found.machine) == ("mine", "1", "by hand", "slow")
     one, two, three = found.answers
+    again = [GOOD | {"resolution": "coarse"}, GOOD | {"resolution": "fine"}]
+    assert len(read(tmp_path, FILE | {"answers": again}).answers) == 2
     assert (one.conductivity, one.lower, one.upper, one.cpu_s) == (1.4, 1.3, 1.5, 2.0) and one.tensor.shape == (3, 3)
     assert two.temperatures.tolist() == [0.5, 1.0] and np.isnan(two.conductivity) and three.refused == "pores"
 
@@ -40,11 +42,25 @@ def test_what_a_file_holds(tmp_path):
         (FILE | {"answers": [GOOD, {"conductivity": 1.0}]}, r"answers\[1\].scene: missing"),
         (FILE | {"answers": [{"scene": "x"}]}, "must have a conductivity, temperatures, or refused"),
         (FILE | {"answers": [GOOD | {"conductivty": 1.0}]}, "did you mean 'conductivity'"),
-        (FILE | {"answers": [GOOD | {"conductivity": "1.4"}]}, r"conductivity = '1.4': must be a finite number, in SI"),
+        (
+            FILE | {"answers": [GOOD | {"conductivity": "1.4"}]},
+            r"= '1.4': must be a finite number, W/\(m K\), without quotes",
+        ),
+        (FILE | {"answers": [GOOD | {"cpu_s": "2"}]}, r"cpu_s = '2': must be a finite number, >= 0, without quotes"),
         (FILE | {"answers": [GOOD | {"conductivity": True}]}, r"conductivity = true: must be a finite number"),
-        (FILE | {"answers": [GOOD | {"cpu_s": -1.0}]}, r"cpu_s = -1.0: must be .*no cost below 0"),
-        (FILE | {"answers": [GOOD | {"lower": 1.6}]}, "lower = 1.6, upper = 1.5: must both be there"),
-        (FILE | {"answers": [{"scene": "x", "conductivity": 1.0, "upper": 2.0}]}, "must both be there"),
+        (FILE | {"answers": [GOOD | {"cpu_s": -1.0}]}, r"cpu_s = -1.0: must be a finite number, >= 0$"),
+        (FILE | {"answers": [GOOD | {"lower": 1.6}]}, "lower = 1.6, upper = 1.5: lower must not be above upper"),
+        (
+            FILE | {"answers": [{"scene": "x", "conductivity": 1.0, "upper": 2.0}]},
+            "has upper and no lower; must have both",
+        ),
+        (FILE | {"answers": [GOOD, GOOD]}, r"answers\[1\]: scene 'sc-third-s10' is answered in answers\[0\] already"),
+        (
+            {"program": "mine"},
+            "format = missing: must be 'conduction-answers/1'; must be an object with format, program",
+        ),
+        (FILE | {"answers": [GOOD | {"tensor": [["1", 0, 0], [0, 1, 0], [0, 0, 1]]}]}, "three rows of three finite"),
+        ({"format": "conduction-benchmark/1", "scene": {}, "known": {}}, "; this is a scene, and what is judged are"),
         (FILE | {"answers": [GOOD | {"tensor": [[1.0]]}]}, "tensor = .*: must be three rows of three finite numbers"),
         (FILE | {"answers": [GOOD | {"temperatures": [[1.0]]}]}, "temperatures = .*: must be a list of finite numbers"),
         (json.dumps(FILE).replace("1.4", "NaN"), "conductivity = nan: must be a finite number"),

@@ -10,6 +10,8 @@ from demheat.packing.gate import check_packing
 from demheat.packing.tile import OFF, STRETCH, fits, numbers, tiled
 
 
+# Six CPU-seconds; whether points are at rest the next sees.
+@pytest.mark.slow
 def test_the_shipped_points_are_those_of_the_recipe():
     """The least tile made anew; steps that come to rest forgive rounding of another machine."""
     made = tile_recipe.make(numbers()[0]).astype(int)

@@ -47,9 +47,19 @@ def test_bad_scenes(make, match):
 @pytest.mark.parametrize(
     ("inclusions", "load", "match"),
     [
-        ([ball(0.5, 0.5, 0.5, 0.51)], PERIODIC, "sphere of diameter 1.02 is larger than the box; must be <= 1.0"),
+        ([ball(0.5, 0.5, 0.5, 0.51)], PERIODIC, "sphere of diameter 1.02 is larger than the box; must be <= 1.0 m"),
         ([ball(1.2, 0.5, 0.5, 0.1)], {}, "lies outside the box"),
-        ([ball(0.3, 0.5, 0.5, 0.2), ball(0.6, 0.5, 0.5, 0.2)], {}, r"\[0\] and \[1\] overlap partially"),
+        (
+            [ball(0.3, 0.5, 0.5, 0.2), ball(0.6, 0.5, 0.5, 0.2)],
+            {},
+            r"\[0\] and \[1\] overlap partially: .*spheres of 0.75 times their radii would be$",
+        ),
+        # What touches another one from within would come out of it.
+        (
+            [ball(0.3, 0.5, 0.5, 0.2), ball(0.4, 0.5, 0.5, 0.1), ball(0.6, 0.5, 0.5, 0.15)],
+            {},
+            r"\[0\] and \[2\] .* fully nested$",
+        ),
         ([ball(0.1, 0.5, 0.5, 0.2), ball(0.8, 0.5, 0.5, 0.2)], PERIODIC, r"\[0\] and \[1\] overlap partially"),
         ([ball(0.5, 0.5, 0.5, 0.1), ball(0.5, 0.5, 0.5, 0.2)], {}, r"\[0\] is hidden by inclusions\[1\]"),
         ([ball(0.5, 0.5, 0.5, 0.1), ball(0.5, 0.5, 0.5, 0.1)], {}, r"\[0\] is hidden by inclusions\[1\]"),

@@ -46,7 +46,7 @@ def test_many_spheres_nested_in_a_skewed_cell():
     known = multipole.solve(scene, accuracy=1e-8).mean_flux @ np.array(scene.gradient) / -5.25
     found = bracket.solve(scene, size=0.15)
     assert found.lower < known < found.upper
-    assert found.width < 0.015
+    assert found.width < 4e-3  # 2.1e-3 was found
     # Nested ones, which multipoles do not know, beside finite elements ten times better than the bracket.
     scene = Scene(scene.size, scene.matrix, spheres, walls={"x-": 3.0, "x+": -1.0})
     found = bracket.solve(scene, size=0.1)
@@ -79,8 +79,8 @@ def test_a_width_beyond_any_mesh_is_refused_by_one_mesh(monkeypatch):
 
 def test_a_width_is_reached():
     scene = gallery.sphere_in_cube(10.0)
-    found = bracket.solve(scene, size=scene.size[0] / 6, width=2e-3)
-    assert found.width <= 2e-3
+    found = bracket.solve(scene, size=scene.size[0] / 6, width=1e-3)
+    assert found.width <= 1e-3
     assert found.stats["size"] < scene.size[0] / 6
     assert found.lower < exact.solve(scene).conductivity < found.upper
 

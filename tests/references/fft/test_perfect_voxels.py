@@ -141,6 +141,15 @@ def test_lines_that_have_ended_are_walked_no_farther(monkeypatch):
     assert sum(asked) < 60
 
 
+def test_a_line_is_followed_to_a_plate_that_it_crosses_at_a_slant():
+    """The plate's normal has 60 degrees to it: each round halves what is left, and it is nearer to one end."""
+    plate = Box(MIDDLE, (0.004, 0.8, 0.8), Material(1.0), rotation=(0.0, 0.0, math.pi / 3))
+    scene = body(plate, matrix=math.inf, **CELL)
+    # Through it, and past it by a tenth of a line.
+    upper = np.array([(0.514, 0.5, 0.5), (0.504 + 1.1 / 16, 0.5, 0.5)])
+    assert perfect._leaves(scene, plate, upper, 0, 1 / 16, -1.0).tolist() == [True, False]
+
+
 def test_what_ends_before_a_wall_does_not_span():
     """Half a voxel before it: links see the gaps, 2 h of the matrix at either end of a fibre."""
     field = fft.solve(body(Box(MIDDLE, (0.97, 1.0, 1.0), PERFECT), **X), voxels=16)

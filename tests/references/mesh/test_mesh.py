@@ -178,8 +178,10 @@ def test_a_failed_size_is_tried_again_then_refused(monkeypatch):
     ],
 )
 def test_touching_surfaces_are_refused(inclusions):
-    with pytest.raises(NotImplementedError, match="touch"):
+    with pytest.raises(NotImplementedError, match="touch") as told:
         mesh.make(scene(*inclusions), size=0.2)
+    # Two spheres beside each other: one in the other, walls and layers would not be apart by that.
+    assert ("radius_factor = 0.99" in str(told.value)) == (inclusions[-1].center == (0.7, 0.5, 0.5))
 
 
 def test_wrong_geometry_is_noticed(monkeypatch):

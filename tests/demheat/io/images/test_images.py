@@ -181,7 +181,7 @@ BAD = {
     "no npy": (bad_npy, "no array of NumPy"),
     "objects": (objects, "no array of NumPy"),
     "floats": (saved(LABELS.astype(float)), "labels of type float64: must be whole numbers"),
-    "unknown label": (saved(LABELS + 1), "none for labels 2, 201 of the image"),
+    "unknown label": (saved(LABELS + 1), "none for labels 2, 201 of the image; must have one for each"),
     "no tiff": (lambda path: bad_npy(path).rename(path / "x.tif"), "no TIFF, or a part of one"),
     "truncated packed tiff": (cut(tiff_packed, 200), "no TIFF, or a part of one"),
     "colour": (colour, "3 channels of colour"),

@@ -46,6 +46,11 @@ BROKEN = [
     ("radius_mm = 3", 'radius = "3"', 10, r"radius = '3': must be a number, or text of a number and a unit such as '3 m'"),
     ("radius_mm = 3", 'radius = "3 mmm"', 10, r"unit 'mmm' is not known"),
     ("radius_mm = 3", 'radius = "3 kg"', 10, r"unit 'kg' does not fit; must be one like m"),
+    ("radius_mm = 3", "diameter_mm = 6", 10, r"diameter_mm: no such key here; did you mean 'radius_mm', half of it"),
+    ("radius_mm = 3", "radius_mm = 3\ngradient_K_mm = [0, 1, 0]", 11, r"a key of the file itself must stand above its"),
+    ("conductivity = 1.4", "k = 1.4", 6, r"materials.silica.k: no such key here; did you mean 'conductivity'"),
+    ("conductivity = 1.4", 'conductivity = "1,4"', 6, r"= '1,4': must have a decimal point, as 1.4"),
+    ("[solve.fft]", '[solve]\nmethod = "fft"\n[solve.fft]', 16, r"solve.method: each method has a table of its own, as"),
     ("radius_mm = 3", "radius_inch = 3", 10, r"radius_inch: no such key here; did you mean 'radius"),
     ("radius_mm = 3", "radius_mm = 1e60", 7, r"inclusions\[0\]: sphere of diameter 2e\+57 is larger than the box"),
     ("center_mm = [5, 5, 5]", "center_mm = [5, 5]", 9, r"center_mm = \[5, 5\]: must be three finite numbers"),
@@ -150,6 +155,24 @@ def test_two_inclusions_that_overlap_are_both_placed(tmp_path):
     )
 
 
+@pytest.mark.parametrize(
+    ("there", "told"),
+    [
+        ('shape = "mesh"', "must be one of 'sphere', .*'surface mesh'; did you mean 'surface mesh'?"),
+        ('shape = "surface_mesh"', "did you mean 'surface mesh'?"),
+        ('shape = "STL"', "did you mean 'surface mesh'?"),
+        ('shape = "ball"', "did you mean 'sphere'?"),
+        ('shape = "gyroid"', "'surface mesh'; level sets are for Python alone, demheat.LevelSet"),
+        ('file = "part.stl"', 'is a surface of triangles; must have shape = "surface mesh" beside it'),
+        ('file = "part.step"', r"must be exported as triangles \(.stl\), with shape"),
+        ("", "shape is missing; must be one of 'sphere', .*'surface mesh', or file, of a table of spheres"),
+    ],
+)
+def test_a_shape_by_another_name_is_told_the_right_one(tmp_path, there, told):
+    text = changed({'shape = "sphere"\ncenter_mm = [5, 5, 5]\nradius_mm = 3': there})
+    assert re.search(told, refused(tmp_path, text))
+
+
 # Tables of spheres: text, line, words.
 TABLES = [
     ("", 1, r"is empty; must begin with a line of names"),
@@ -161,9 +184,15 @@ TABLES = [
     ("x,y,z,radius\n.005,.005,.005,-1\n", 2, r"radius = -1.0: must be a finite number > 0"),
     ("x,y,z,radius\n.005,.005,.005,.001\n\n# c\n.005,.005,.005\n", 5, r"3 values; must be 4"),
     ("x,y,z,radius\n.005,.005,five,.001\n", 2, r"z = 'five': must be a number with a decimal point"),
-    ("x;y;z;radius\n0,005;.005;.005;.001\n", 2, r"x = '0,005': must be a number with a decimal point"),
+    ("x;y;z;radius\n0,005;.005;.005;.001\n", 2, r"x = '0,005': must be a number with a decimal point, as 0.005"),
     ("x,y,z,radius,material\n.005,.005,.005,.001,silcia\n", 2, r"material = 'silcia'.*did you mean 'silica'"),
     ("x_mm,y_mm,z_mm,radius_mm\n5,5,5,2\n5,5,8,2\n", 2, r"overlap partially.*beads.csv:3"),
+    ("300,500,500,150\n", 1, r"'300, 500, 500, 150': no names of columns; must begin with a line of names: x,y,z,"),
+    ("x y z radius\n1 2 3 4\n", 1, r"'x y z radius': one column; must have one of comma, semicolon, tab between"),
+    ("x,y,z,radius\n0,005,0,005,0,005,0,001\n", 2, r"8 values; must be 4.*a decimal comma is taken for the next"),
+    ("x,y,z,radius\n5,5,5,2\n", 2, r"5, 5, 5 m: lies outside the box.*read with unit = \"m\", \"mm\" would fit"),
+    ("x_m,y_m,z_m,radius\n5,5,5,2\n", 2, r"numbers were read in m, as their columns are named, \"mm\" would fit"),
+    ("x,y,z,radius\n.005,.005,.005,2\n", 2, r"radius = 2 m: must be at most .* as the box; .*\"mm\" would fit"),
     (b"x,y,z,radius\n\xff,1,1,1\n", 2, r"byte 0xff is no UTF-8"),
 ]
 

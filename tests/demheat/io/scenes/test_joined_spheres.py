@@ -43,8 +43,14 @@ def test_groups_are_bodies(tmp_path, periodic):
 
 def test_what_overlaps_is_told_what_helps(tmp_path):
     rows = [(0.4, 0.5, 0.5, 0.2), (0.6, 0.5, 0.5, 0.2)]
-    with pytest.raises(ValueError, match=r"overlap partially.*radius_factor = 0.99 or join = true may mend it$"):
-        read(tmp_path, rows, more="")
+    # The worst pair of three decides; of .9 it is .555, rounded down.
+    three = [*rows, (0.1, 0.5, 0.5, 0.21)]
+    for more, told in (("", 0.5), ("radius_factor = 0.9", 0.499)):
+        with pytest.raises(
+            ValueError, match=rf"overlap partially.*; radius_factor = {told} will mend it, or join = tr"
+        ):
+            read(tmp_path, three, more=more)
+    assert len(read(tmp_path, three, more="radius_factor = 0.5").inclusions) == 3
     assert [each.kind for each in read(tmp_path, rows).inclusions] == ["union"]
     assert [each.kind for each in read(tmp_path, rows, more="radius_factor = 0.49").inclusions] == ["sphere"] * 2
     with pytest.raises(ValueError, match="s.csv:2: overlaps a sphere of another material"):

@@ -122,8 +122,12 @@ def test_what_a_file_cannot_hold_is_refused(tmp_path):
         scenes.write(scene, tmp_path / "scene.toml")
     with pytest.raises(ValueError, match="Scene.initial: a file cannot hold a function"):
         scenes.write(Scene((1, 1, 1), RESIN, initial=lambda x: x[:, 0]), tmp_path / "scene.toml")
-    with pytest.raises(ValueError, match="must be a Scene"):
+    with pytest.raises(ValueError, match="must be a Scene$"):
         scenes.write(5, tmp_path / "scene.toml")
+    with pytest.raises(
+        ValueError, match=r"scene = 'mine.toml': must be a Scene; demheat.io.scenes.read\('mine.toml'\)"
+    ):
+        scenes.write("mine.toml", tmp_path / "scene.toml")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial import cKDTree
 from solid_shapes import MATRIX, OTHER, RING, SOLIDS
 
-from demheat import Scene, solve
+from demheat import Scene, Sphere, solve
 from demheat.packing.relax import relax
 from demheat.packing.twins.conforming import conform
 from demheat.packing.twins.gaps import Interfaces
@@ -134,7 +134,7 @@ def two_unions():
 @pytest.mark.parametrize("scene", [two_eggs(), two_unions()], ids=["eggs", "unions"])
 def test_points_of_narrow_gaps_are_as_close_as_they_ask_and_even(scene):
     """Every place lies within so many of its own spacings of a point, and no two are nearer than what is thinned to."""
-    radius, gap_spacing = 0.045, 0.85
+    radius, gap_spacing = 0.06, 0.85
     interfaces = Interfaces(scene, 4.0 * radius)
     found = list(patterns(interfaces, radius, 0, Tally(), gap_spacing))
     for number, (points, _, own) in enumerate(found):
@@ -155,6 +155,16 @@ def test_points_of_narrow_gaps_are_as_close_as_they_ask_and_even(scene):
         away, pair = cKDTree(points).query(points, k=2)
         asked = np.min(own_spacing[pair], axis=1)
         assert np.min((away[:, 1] / asked)[asked < 1.5 * radius]) > 0.74
+
+
+def test_a_ball_that_no_gap_is_near_has_the_usual_spacing():
+    """Each point stands for a facet of the area that those of a triangular pattern have, 1.6 mean radii apart."""
+    radius, tally = 0.03, Tally()
+    interfaces = Interfaces(scene(Sphere(MIDDLE, 0.3, OTHER)), 4.0 * radius)
+    ((points, _, _),) = patterns(interfaces, radius, 0, tally, 0.85)
+    # One facet at most, of 567.
+    assert_allclose(len(points), 4 * math.pi * 0.3**2 / (math.sqrt(0.75) * (1.6 * radius) ** 2), rtol=0.005)
+    assert tally.twins == tally.even == 2 * len(points)
 
 
 def test_points_to_choose_from_are_sought_in_gaps_alone(monkeypatch):

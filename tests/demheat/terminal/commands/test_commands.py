@@ -120,12 +120,22 @@ WRONG = [
     (["solve", "SCENE", "--method", "maxwel"], "did you mean 'maxwell'"),
     (["solve", "SCENE", "--method", "exact", "--knob", "points=4"], "--knob points=4: no knob of exact; did you mean 'points_per_axis'"),
     (["solve", "SCENE", "--method", "maxwell", "--knob", "voxels=4"], "--knob voxels=4: no knob of maxwell; must be one of formula"),
+    (["scene.toml"], "a command comes first, as `demheat solve scene.toml`"),
+    (["view", "SCENE", "--knob", "voxels=4"], "--knob voxels=4: no method is named; must be with --method"),
     (["solve", "SCENE", "--method", "exact", "--knob", "voxels"], "--knob voxels: must be like voxels=64"),
     (["solve", "SCENE", "--method", "exact", "--knob", "fft.voxels=4"], "no method 'fft' is asked for"),
     (["solve", "SCENE", "--method", "rayleigh", "--knob", "formula=maxwell"], "method 'rayleigh' is what has formula = 'rayleigh'; must be left out"),
-    (["recommend", "SCENE", "--accuracy", "2"], "accuracy = 2.0: must be a number from 1e-9 to below 1"),
-    (["recommend", "SCENE", "--accuracy", "much"], "argument --accuracy: invalid float value: 'much'"),
-    (["effective", "SCENE", "--method", "fft-em"], "method = 'fft-em': must be one of exact"),
+    (["recommend", "SCENE", "--accuracy", "2"], "--accuracy 2: must be a number from 1e-9 to below 1"),
+    (["recommend", "SCENE", "--accuracy", "much"], "--accuracy much: must be a number from 1e-9 to below 1, as 0.01, or per cent, as 1%"),
+    (["effective", "SCENE", "--accuracy", "100%"], "--accuracy 100%: must be a number from 1e-9 to below 1"),
+    (["effective", "SCENE", "--accuracy", "0,5%"], "or per cent, as 1%; decimals have a point"),
+    (["compare", "SCENE", "--seconds", "1min"], "--seconds 1min: must be a number of seconds > 0, as 60"),
+    (["solve", "SCENE", "--seconds", "inf"], "--seconds inf: must be a number of seconds > 0, as 60"),
+    (["compare", "SCENE", "--budget", "5"], "did you mean '--seconds'.*demheat compare --help tells more"),
+    (["compare", "SCENE", "--accuracy", "1%"], "--accuracy 1%; only effective, recommend, judge has it"),
+    (["report", "SCENE", "--methods", "fft,nope"], "--methods fft,nope: no such method, 'nope'; must be one of dem, .*multipole"),
+    (["effective", "SCENE", "--method", "maxwell"], "--method maxwell: no such method; must be one of exact, multipole, fem"),
+    (["effective", "SCENE", "--method", "fft-em"], "--method fft-em: no such method; did you mean"),
     (["compare", "SCENE", "--method", "exact", "--out", "SCENE"], "--out .*scene.toml: must be a folder, and .* is a file"),
 ]  # fmt: skip
 
@@ -174,8 +184,20 @@ def test_what_values_of_knobs_mean(scene):
         asked(file, ["fem"], ["fem.size=2 kg"], default=())
     found = asked(file, ["fem", "fft"], [words[0], *words[2:5]], default=())
     assert [each.knobs for each in found] == [{"size": 0.02}, {"tolerance": 1e-5, "threads": None, "voxels": 32}]
-    (dem,) = asked(file, None, ["particles=500", "allow_few=True"], default=("dem",))
-    assert dem.knobs == {"particles": 500, "allow_few": True}
+    (dem,) = asked(file, None, ["particles=5e4", "allow_few=True"], default=("dem",))
+    assert dem.knobs == {"particles": 50000, "allow_few": True} and type(dem.knobs["particles"]) is int
+
+
+def test_an_accuracy_may_be_per_cent(capsys, laminate):
+    """On the command line and in a file, as the decimal that is written there."""
+    for words in (["--accuracy", "0.7%"], ["--accuracy", "0.7 %"]):
+        status, out, _ = run(capsys, "recommend", laminate, *words)
+        assert status == 0 and "to an accuracy of 0.007\n" in out
+    laminate.write_text('accuracy = "0.7 %"\n' + laminate.read_text(encoding="utf-8"), encoding="utf-8")
+    assert scenes.read_file(laminate).accuracy == 0.007
+    status, out, _ = run(capsys, "effective", laminate, "--methods", "exact;fft")
+    # One accuracy, the one that was found.
+    assert status == 0 and re.search(r"\nby exact, within \S+ % \(", out) and "accuracy" not in out.partition("\n")[2]
 
 
 def test_version_and_help(capsys):

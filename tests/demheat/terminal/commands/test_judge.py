@@ -24,7 +24,7 @@ def test_one_file_is_judged(mine, capsys):
     assert main(["judge", "mine.json"]) == 0
     printed = capsys.readouterr().out
     # 1.41 over 1.39573.
-    assert "1 answers to 1 scenes; median error 1 %" in printed and re.search(r"sc-third-s10 +1 +1.4e-10 +2", printed)
+    assert "1 answer to 1 scene; median error 1 %" in printed and re.search(r"sc-third-s10 +1 +1.4e-10 +2", printed)
     page = (mine / "demheat-out" / "mine.html").read_text(encoding="utf-8")
     assert "&lt;mine&gt;" in page and "<mine>" not in page and "Leaderboard" not in page
     assert not re.search(r"<(script|link|img)|https?:", page)
@@ -32,7 +32,7 @@ def test_one_file_is_judged(mine, capsys):
 
 def test_examples_make_a_leaderboard(mine, capsys):
     assert len(EXAMPLES) >= 6
-    assert main(["judge", *map(str, EXAMPLES), "mine.json", "--accuracy", "0.02", "--out", "there"]) == 0
+    assert main(["judge", *map(str, EXAMPLES), "mine.json", "--accuracy", "2%", "--out", "there"]) == 0
     printed = capsys.readouterr().out
     page = (mine / "there" / "leaderboard.html").read_text(encoding="utf-8")
     programs = [json.loads(path.read_text(encoding="utf-8"))["program"] for path in EXAMPLES]
@@ -48,7 +48,7 @@ def test_examples_make_a_leaderboard(mine, capsys):
     [
         (["gone.json"], "gone.json: No such file or directory"),
         (["mine.json", "mine.json"], "program '<mine>': each file must be of a program of its own"),
-        (["mine.json", "--accuracy", "2"], "--accuracy 2: must be a part, above 0 and below 1"),
+        (["mine.json", "--accuracy", "2"], "--accuracy 2: must be a number from 1e-9 to below 1, as 0.01, or per cent"),
         (["mine.json", "--scenes", "."], "holds no scenes|there is no scene"),
         (["mine.json", "--scenes", "nowhere"], "nowhere: holds no scenes; they belong to a clone"),
         (["wrong.json"], r"wrong.json: answers\[0\]: there is no scene 'sc-thrid-s10' .*did you mean 'sc-third-s10'"),

@@ -58,7 +58,7 @@ def test_temperatures_are_judged_by_the_worst_over_the_span():
         ValueError, match=r"mine.json: answers\[0\]: scene 'slab-step' asks for temperatures .* 12 points"
     ):
         score(scene="slab-step", temperatures=given[:5])
-    with pytest.raises(ValueError, match="not none"):
+    with pytest.raises(ValueError, match="in their order, and there are none"):
         score(scene="slab-step", conductivity=1.0)
     with pytest.raises(ValueError, match="asks for a conductivity, which is not there"):
         score(scene=SPHERE, temperatures=given)

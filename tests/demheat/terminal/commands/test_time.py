@@ -1,6 +1,7 @@
 """Only here: --seconds without effect, and what cannot be written said after the solve."""
 
 import csv
+import re
 
 import pytest
 
@@ -27,13 +28,14 @@ def test_solve_tells_what_is_done_by_then(capsys, scene):
         capsys, "solve", scene, "--methods", "fft,maxwell", "--knob", "voxels=8", "--seconds", "1e-9"
     )
     assert status == 1 and "conductivity" not in out
-    assert err.splitlines() == [
-        f"demheat: {name}: seconds = 1e-09 are over, in other methods" for name in ("fft", "maxwell")
-    ]
+    *told, advice = err.splitlines()
+    assert told == [f"demheat: {name}: seconds = 1e-09 are over, in other methods" for name in ("fft", "maxwell")]
+    sizes = "--seconds 4e-09, or a coarser size, as --knob fft.voxels=4."
+    assert advice == f"demheat: The time was over before fft, maxwell got done: must be more, as {sizes}"
     status, out, err = run(capsys, "solve", scene, "--method", "maxwell", "--seconds", "1000")
     assert (status, err) == (0, "") and "conductivity" in out
     status, out, err = run(capsys, "solve", scene, "--method", "maxwell", "--seconds", "-1")
-    assert status == 2 and "seconds = -1.0: must be a finite number > 0" in err
+    assert status == 2 and "--seconds -1: must be a number of seconds > 0" in err
 
 
 def test_an_interval_that_takes_too_long_costs_the_interval(capsys, scene, monkeypatch):
@@ -62,10 +64,20 @@ def test_compare_goes_on_where_the_time_was_over(capsys, scene, tmp_path, monkey
     status, out, _ = run(capsys, *words, "--seconds", "1000")
     monkeypatch.undo()
     assert status == 1 and "bruggeman stopped: seconds = 1000 are over, in other methods" in out
+    assert "before rayleigh, bruggeman got done: must be more, as --seconds 4000. Rows that are done stay" in out
     with open(tmp_path / "out" / "scene.csv", newline="") as file:
         assert [row["method"] for row in csv.DictReader(file)] == ["maxwell"]
     status, out, err = run(capsys, *words)
     assert status == 0 and "stopped" not in out and err == "rayleigh ...\nbruggeman ...\n"
+
+
+def test_a_picture_without_answers_is_drawn_without_a_warning(capsys, scene, tmp_path):
+    words = "--methods", "fem,bruggeman", "--seconds", "1e-9", "--out", tmp_path / "out"
+    # Warnings are errors here.
+    status, out, _ = run(capsys, "compare", scene, *words)
+    # The coarse size of elements, as the file names none, in metres.
+    assert status == 1 and re.search(r"as --knob fem.size=0.0\d+\. Rows", out)
+    assert (tmp_path / "out" / "scene.png").exists()
 
 
 def test_effective_without_an_answer(capsys, scene):
