@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
 from demheat.scene.image import slabs
@@ -29,7 +31,20 @@ def changed(values, *, crop=None, coarsen=1, threshold=None):
             made[part] = _most(own, coarsen)
         else:
             made[part] = np.searchsorted(levels, own if coarsen == 1 else _blocks(own, coarsen).mean(axis=-1), "right")
+    if levels is not None:
+        _warn_of_one(made, values, threshold)
     return made
+
+
+def _warn_of_one(labels, values, threshold):
+    """A threshold that tells nothing apart is a slip, mostly: of another depth of grey."""
+    first = labels.flat[0]
+    if labels.size > 1 and np.all(labels == first):
+        warnings.warn(
+            f"threshold = {threshold!r}: all {labels.size} voxels are of label {first}, as grey values are "
+            f"{values.min()} to {values.max()}",
+            stacklevel=2,
+        )
 
 
 def _blocks(values, coarsen):

@@ -50,6 +50,11 @@ WRONG = [
 ]
 
 
+def test_a_threshold_that_tells_nothing_apart_is_warned_of():
+    with pytest.warns(UserWarning, match=r"threshold = 300: all .* voxels are of label 0, as grey values are .* to "):
+        assert not changed(GREY, threshold=300).any()
+
+
 @pytest.mark.parametrize(("how", "words"), WRONG, ids=[str(how) for how, _ in WRONG])
 def test_what_makes_no_image(how, words):
     with pytest.raises(ValueError, match=words):
