@@ -25,6 +25,8 @@ LENGTHS = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"))
 # The matrix grey, then colours that the colour-blind tell apart; more conductivities than that share a scale.
 COLOURS = ("#d9d9d9", "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442")
 POINT, BARS = "#0072b2", ("#f0f0f0", "#dadada")
+# Of values: what differs by less is equal, and how far colours then reach.
+EQUAL, FLAT = 1e-9, 0.01
 
 
 def plot_scene(scene: Scene, *, pixels: int = PIXELS) -> Figure:
@@ -82,7 +84,8 @@ def plot_field(field: Field, *, axis: int | None = None, at: float | None = None
     ):
         # A few corners with a flux without bound would hide all else.
         top = np.nanpercentile(values, 99.5) if panel is panels[1] else np.nanmax(values)
-        image = _shown(panel, scene, axis, values, {"cmap": cmap, "vmin": np.nanmin(values), "vmax": top})
+        low, top = _ends(np.nanmin(values), top)
+        image = _shown(panel, scene, axis, values, {"cmap": cmap, "vmin": low, "vmax": top})
         figure.colorbar(image, ax=panel, shrink=0.8, label=label)
         panel.set_title(f"{AXES[axis]} = {_length(scene, at)}")
     return figure
@@ -176,6 +179,13 @@ def _place(kinds, values):
     """Which of the kinds each value is."""
     order = np.argsort(kinds)
     return order[np.searchsorted(kinds, values, sorter=order)].astype(float)
+
+
+def _ends(low, top):
+    """Ends of a scale of colours, apart where values differ by rounding alone, as on a plane along the walls."""
+    most = max(abs(low), abs(top))
+    pad = FLAT * (most or 1.0) if top - low <= EQUAL * most else 0.0
+    return low - pad, top + pad
 
 
 def _shown(panel, scene, across, values, look):
