@@ -120,7 +120,7 @@ def _gap(scene):
         return WIDEST
     centers, radii = (np.array(part) for part in zip(*(shape.ball() for shape in outer), strict=True))
     # Balls around bounds reach farther than those around triangles.
-    radii = np.array([shape.drawn[3] or radius for shape, radius in zip(outer, radii, strict=True)])
+    radii = np.array([shape.drawn.reach or radius for shape, radius in zip(outer, radii, strict=True)])
     size = np.array(scene.size)
     if not scene.periodic:
         low, high = centers - radii[:, None], size - centers - radii[:, None]

@@ -249,7 +249,7 @@ def _has_limit(name, law, loads):
 
 
 def _all(cost, loads, limit=False):
-    again = AGAIN if any(shape.drawn[2] for shape in loads.body.inclusions) else 1.0
+    again = AGAIN if any(shape.drawn.sharp for shape in loads.body.inclusions) else 1.0
     return again * (FOR_LIMIT if limit else BESIDES) * len(loads.parts) * cost.cpu_s
 
 

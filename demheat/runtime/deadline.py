@@ -22,6 +22,8 @@ class _Deadline(NamedTuple):
     end: float
 
 
+# What a message, and the note of a row, says of a time that did not suffice.
+OVER = "are over, in"
 # Of what computes in this thread; threads that are started begin without.
 _now: ContextVar[_Deadline | None] = ContextVar("deadline", default=None)
 
@@ -82,7 +84,7 @@ def look(doing: str) -> None:
     """Raise TimeoutError if a budget is over."""
     deadline = _now.get()
     if deadline is not None and time.monotonic() >= deadline.end:
-        raise TimeoutError(f"seconds = {deadline.seconds:g} are over, in {doing}")
+        raise TimeoutError(f"seconds = {deadline.seconds:g} {OVER} {doing}")
 
 
 heard_by(look)

@@ -26,7 +26,7 @@ import numpy as np
 
 from demheat.scene.inputs import finite
 from demheat.scene.scene import Scene, check_scene
-from demheat.scene.shapes.base import nearest
+from demheat.scene.shapes.periodic import nearest
 
 # Ball of the exact solution over the sphere at least: below degree 1 is not the most.
 APART = 2.0

@@ -7,8 +7,9 @@ from itertools import product
 
 import numpy as np
 
-from demheat.scene.shapes.base import Shape, shifts
+from demheat.scene.shapes.base import Shape
 from demheat.scene.shapes.directions import across
+from demheat.scene.shapes.periodic import shifts
 from demheat.scene.shapes.samples import surface_points
 
 # Samples of a surface along its least length, at least, and along the longest edge of the box, at most.

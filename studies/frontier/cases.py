@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from studies.common.searches.in_time import IN_TIME
-from studies.common.searches.scenes import FOR_LAWS, HELD_BACK, ONLY_SPHERES, SCENES
+from studies.common.searches.scenes import FOR_LAWS, HELD_BACK, MESHED, ONLY_SPHERES, SCENES
 from studies.common.searches.ways import ASKED, ASKED_S, WAYS
 
 # Processor seconds of a search, of a scene that is named, else of any.
@@ -12,7 +12,7 @@ USUAL, BUDGET = (
     {"1000 spheres": 90.0, "5000 spheres": 190.0, "gyroid": 60.0, "laminate": 5.0, "image": 8.0, "thin shell": 12.0},
 )
 # Among many bodies elements begin where other methods end.
-MESHED_S, MESHED = 55.0, ("83 spheres", "polydisperse", "unequal, f = .5", "30 at 0.001", "resistance", "box of 1:1:4")
+MESHED_S = 55.0
 # Of a body that warms up.
 IN_TIME_S = 30.0
 # Of a scene that is there for the laws alone.

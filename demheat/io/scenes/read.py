@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
-from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,11 +11,9 @@ from demheat.declared import all_methods
 from demheat.io.scenes.scene_table import scene_of
 from demheat.io.scenes.source import Source, read_source
 from demheat.io.scenes.table import Table
-from demheat.io.scenes.units import LENGTH, PLAIN, scaled
+from demheat.io.scenes.units import LENGTH, PLAIN, part_of
 from demheat.io.words import as_toml, nearest
 from demheat.scene import Scene
-
-PER_CENT = re.compile(r"\s*(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?|\.\d+)\s*%\s*", re.ASCII)
 
 
 class SceneFile(NamedTuple):
@@ -105,10 +101,10 @@ def read_file(path) -> SceneFile:
 def _accuracy(table):
     """A part, or text of per cent."""
     value = table.values.get("accuracy")
-    if isinstance(value, str) and (found := PER_CENT.fullmatch(value)):
-        accuracy = scaled(float(found[1]), Fraction(1, 100))
+    if isinstance(value, str):
+        accuracy = part_of(value) if "%" in value else math.nan
     else:
-        accuracy = table.number("accuracy", PLAIN) if not isinstance(value, str) else math.nan
+        accuracy = table.number("accuracy", PLAIN)
     if accuracy is not None and not 1e-9 <= accuracy < 1:
         told = 'must be a number from 1e-9 to below 1, as 0.01, or text of per cent, as "1 %"'
         raise table.error("accuracy", f" = {as_toml(value)}: {told}")

@@ -52,6 +52,16 @@ COEFFICIENT = Quantity("W/(m2 K)", {"W_m2K": "W/(m2 K)", "kW_m2K": "kW/(m2 K)"})
 VELOCITY = Quantity("m/s", {"m_s": "m/s", "mm_s": "mm/s"})
 
 
+def part_of(text: str) -> float:
+    """A part: a number, or per cent, 0.1 % as the decimal that it is written as; not-a-number of other text."""
+    number = text.strip()
+    try:
+        value = float(number.removesuffix("%"))
+    except ValueError:
+        return math.nan
+    return scaled(value, Fraction(1, 100)) if number.endswith("%") else value
+
+
 def read_quantity(text: str, quantity: Quantity) -> tuple[float, str]:
     """A number with its unit, in SI, and the scale of a temperature."""
     found = NUMBER.fullmatch(text)

@@ -9,8 +9,9 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from demheat.scene import Scene, Shape
-from demheat.scene.shapes.base import TOUCH, shifts
+from demheat.scene.shapes.base import TOUCH
 from demheat.scene.shapes.patterns import Room
+from demheat.scene.shapes.periodic import shifts
 
 # Points of an even pattern on a sphere, at least: facets that enclose it.
 FEWEST = 12

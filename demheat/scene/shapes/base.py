@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from demheat.scene.inputs import moderate, number
 from demheat.scene.material import WITHIN, Material
+from demheat.scene.shapes.drawn import Drawn
 from demheat.scene.shapes.patterns import Room, closer, even_points, level
 
 # Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
@@ -145,9 +146,9 @@ class Shape(ABC):
         return float(np.min(high[ends] - low[ends], initial=np.inf))
 
     @property
-    def drawn(self) -> tuple[float, int, int, float]:
-        """Of triangles that it is drawn by: area, m2, number, sharp edges, reach from its middle, m; 0 of a form."""
-        return 0.0, 0, 0, 0.0
+    def drawn(self) -> Drawn:
+        """What it is drawn by, if it is by triangles."""
+        return Drawn()
 
     @property
     def depth(self) -> float:
@@ -392,16 +393,3 @@ class Shape(ABC):
 def check_resistance(shape: Shape) -> None:
     """Check and cast the resistance of a shape's surface, m2 K/W, or raise ValueError."""
     number(shape, "resistance", f"a finite number >= 0 m2 K/W{WITHIN}", lambda v: v >= 0 and moderate(v))
-
-
-def shifts(shape: Shape, period: np.ndarray | None) -> list[np.ndarray]:
-    """By what the images beside a shape are moved, m: along axes along which it ends; none without a period."""
-    if period is None:
-        return []
-    steps = product(*((-1, 0, 1) if end else (0,) for end in np.isfinite(shape.bounds()[0])))
-    return [np.array(step) * period for step in steps if any(step)]
-
-
-def nearest(offsets: np.ndarray, period: np.ndarray | None) -> np.ndarray:
-    """Offsets to the nearest periodic image."""
-    return offsets if period is None else offsets - period * np.round(offsets / period)

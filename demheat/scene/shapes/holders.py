@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from demheat.scene.shapes.base import Shape, nearest
+from demheat.scene.shapes.base import Shape
 from demheat.scene.shapes.bins import ball_bins, candidates
+from demheat.scene.shapes.periodic import nearest
 
 # Points looked at together: bounds the scratch memory, and fits a cache.
 BLOCK = 16384

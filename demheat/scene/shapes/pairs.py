@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.scene.shapes.base import TOUCH, Shape, nearest
+from demheat.scene.shapes.base import TOUCH, Shape
 from demheat.scene.shapes.bins import ball_bins, candidates
 from demheat.scene.shapes.holders import bounding_balls
 from demheat.scene.shapes.parted import nested, parted
+from demheat.scene.shapes.periodic import nearest
 
 # Of a thousand: what touches is taken.
 ROUNDING = 1e-6

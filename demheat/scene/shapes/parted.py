@@ -10,7 +10,8 @@ from itertools import product
 
 import numpy as np
 
-from demheat.scene.shapes.base import Shape, nearest
+from demheat.scene.shapes.base import Shape
+from demheat.scene.shapes.periodic import nearest
 
 # Of projections onto both shapes in turn, at most.
 ROUNDS = 60

@@ -10,7 +10,8 @@ import numpy as np
 
 from demheat.scene.inputs import number, vector
 from demheat.scene.material import Material, check_material
-from demheat.scene.shapes.base import Shape, check_resistance, nearest
+from demheat.scene.shapes.base import Shape, check_resistance
+from demheat.scene.shapes.periodic import nearest
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from demheat.scene.inputs import moderate, reals
 from demheat.scene.material import Material, check_material
 from demheat.scene.shapes.base import BESIDE, Shape, check_resistance
 from demheat.scene.shapes.closed import closed
+from demheat.scene.shapes.drawn import Drawn
 from demheat.scene.shapes.patches import Patches
 from demheat.scene.shapes.patterns import BEYOND, LIFTED, SPREAD, Room, between, closer
 from demheat.scene.shapes.solid import Solid
@@ -116,10 +117,11 @@ class SurfaceMesh(Solid):
         return self._body.volume
 
     @property
-    def drawn(self) -> tuple[float, int, int, float]:
-        """Area, number and sharp edges of its triangles, and how far they reach; see `Shape.drawn`."""
+    def drawn(self) -> Drawn:
+        """Its triangles; see `Shape.drawn`."""
         body, sharp = self._body, int(self._patches.sharp.sum())
-        return float(body.areas.sum()), len(body.triangles), sharp, float(np.linalg.norm(body.vertices, axis=1).max())
+        reach = float(np.linalg.norm(body.vertices, axis=1).max())
+        return Drawn(float(body.areas.sum()), len(body.triangles), sharp, reach)
 
     def placed(self, center: Sequence[float]) -> SurfaceMesh:
         """The same body with the middle of its bounds elsewhere; see `Shape.placed`."""

@@ -16,8 +16,8 @@ import numpy as np
 
 from demheat.scene.scene import Scene, check_scene
 from demheat.scene.shapes import Layer, Sphere
-from demheat.scene.shapes.base import nearest
 from demheat.scene.shapes.bins import BallBins, ball_bins, candidates
+from demheat.scene.shapes.periodic import nearest
 
 # Of the longest side: rounding of coordinates that users type or work out.
 SAME = 1e-12

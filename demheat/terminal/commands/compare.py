@@ -15,7 +15,7 @@ import numpy as np
 
 from demheat.declared import all_methods
 from demheat.io.scenes.write import text_of_scene
-from demheat.runtime.deadline import budget
+from demheat.runtime.deadline import OVER, budget
 from demheat.runtime.paths import check_output, made_folder, replaced
 from demheat.runtime.rows import each_kept
 from demheat.scene.inputs import one_line
@@ -31,8 +31,6 @@ OUT = "demheat-out"
 ROUNDING = 1e-6
 # Pixels along the longer side of the slice in the picture.
 PIXELS = 121
-# Of a note about a time that did not suffice, see `demheat.runtime.deadline`.
-OVER = "are over, in"
 # Bytes of the file of such a slice, unpacked: a scene of a hundred thousand spheres is 40 MB of text there.
 LARGEST = 2**27
 

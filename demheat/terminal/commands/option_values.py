@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Sequence
-from fractions import Fraction
 
-from demheat.io.scenes.units import scaled
+from demheat.io.scenes.units import part_of
 from demheat.io.words import nearest
 
 PARTS = "must be a number from 1e-9 to below 1, as 0.01, or per cent, as 1%"
@@ -15,9 +14,7 @@ PARTS = "must be a number from 1e-9 to below 1, as 0.01, or per cent, as 1%"
 
 def accuracy(text: str) -> float:
     """A part: a number, or per cent."""
-    number = _number(text.removesuffix("%"))
-    # 0.1 % as the decimal that it is written as.
-    number = scaled(number, Fraction(1, 100)) if text.endswith("%") else number
+    number = part_of(text)
     if not 1e-9 <= number < 1:
         raise argparse.ArgumentTypeError(f"--accuracy {text}: {PARTS}{_meant(text)}")
     return number

@@ -28,18 +28,20 @@ KNOWN = 3.0
 QUIET = ".*(do not fit into gaps|no particle lies|thin|narrow|miss them|smaller than a voxel|not wide|few across).*"
 DIGITS = 4
 # Of a search for conductivities; of one for fields at points, and of bodies that warm up.
-MEANS, FIELDS, IN_TIME = ("conductivity", "extrapolated"), ("temperature", "flux"), ("temperature",)
+MEANS, FIELDS, WARMING = ("conductivity", "extrapolated"), ("temperature", "flux"), ("temperature",)
 
 
 def searched(name: str, way: str, seconds: float, quantities: tuple = MEANS) -> dict:
     """Row of a search for some quantities within so many processor seconds."""
     scene, truth = scene_of(name), truth_of(name)
     how = begun(WAYS[way], scene)
-    quantities = IN_TIME if how.marches else quantities
+    quantities = WARMING if how.marches else quantities
 
     def judged(quantity, target):
-        if quantity not in quantities or how.marches:
-            return quantity in quantities
+        if quantity not in quantities:
+            return False
+        if how.marches:
+            return True
         if quantity == "extrapolated" and not how.extrapolates:
             return False
         if quantity in ("temperature", "flux") and truth.field is None:

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from surface_bodies import brick, ring
 
 from demheat import Ellipsoid, Layer, LevelSet, Material, Scene, Sphere, SurfaceMesh, gallery, recommend
-from demheat.cheapest import cost_laws
+from demheat.cheapest import cost_laws, ways
 from demheat.cheapest.measures import measures
 
 SCENE = gallery.sphere_in_cube(10.0)
@@ -92,14 +92,14 @@ def test_triangles_and_their_sharp_edges_cost():
     # Measured: .05 to .07 seconds for the ball, .8 to 1.1 for each of two runs for the cube (docs/decisions/estimates).
     assert drawn["dem"].cpu_s > 15 * round_ones["dem"].cpu_s
     assert drawn["fft"].cpu_s > 15 * round_ones["fft"].cpu_s
-    for name, each, knob in (("dem", 1.7e-4, "particles"), ("fft", 4.5e-5, "voxels")):
+    for name, knob in (("dem", "particles"), ("fft", "voxels")):
         value = drawn[name].knobs[knob]
         per_area = value ** (2 / 3) if name == "dem" else value**2
-        besides = each * (1 + 0.38 * math.log(12)) * 0.96 * per_area
+        besides = cost_laws.ON_TRIANGLES[name] * (1 + cost_laws.DEEPER * math.log(12)) * 0.96 * per_area
         smooth = cost_laws.predicted(name, m._replace(triangles=0), value).cpu_s
         assert_allclose(cost_laws.predicted(name, m, value).cpu_s - smooth, besides, rtol=1e-9)
         # Three loads, half as much again for the interval, and a second run beside edges.
-        assert_allclose(drawn[name].cpu_s, 2 * 3 * 1.5 * (smooth + besides), rtol=1e-9)
+        assert_allclose(drawn[name].cpu_s, ways.AGAIN * 3 * ways.BESIDES * (smooth + besides), rtol=1e-9)
 
 
 def test_more_triangles_without_sharp_edges_need_no_second_run():
@@ -109,7 +109,7 @@ def test_more_triangles_without_sharp_edges_need_no_second_run():
     assert_allclose(m.narrowest, 0.24, rtol=1e-12)
     way = ways_of(SurfaceMesh(*ring(), Material(10.0)))["fft"]
     # Three loads; answers of smooth bodies are extrapolated, which costs .3 times as much besides.
-    assert_allclose(way.cpu_s, 3 * 1.3 * cost_laws.predicted("fft", m, way.knobs["voxels"]).cpu_s, rtol=1e-9)
+    assert_allclose(way.cpu_s, 3 * ways.FOR_LIMIT * cost_laws.predicted("fft", m, way.knobs["voxels"]).cpu_s, rtol=1e-9)
 
 
 def test_few_particles_across_a_thin_tube_are_not_asked_for():

@@ -38,7 +38,7 @@ def test_a_harmonic_cubic_comes_back_to_rounding():
     assert_allclose(slope, factors[:, 1:4], atol=1e-8)
 
 
-def test_flat_patterns_lower_the_degree_and_lines_are_not_known():
+def test_of_what_lies_in_a_plane_nothing_is_known():
     """In a plane no slope across it is seen."""
     away = np.random.default_rng(2).normal(size=(1, 40, 3)) * (1.0, 1.0, 0.0)
     how = (np.ones((1, 40)), away[..., 0], np.full(1, 2.0), np.full(1, np.inf))
@@ -77,7 +77,7 @@ def test_what_is_not_joined_to_the_point_does_not_count():
     assert np.array_equal(np.flatnonzero(harmonic.grown(seed, whole)[0].any(axis=(1, 2))), [0, 1, 2])
 
 
-def test_few_voxels_leave_it_to_interpolation():
+def test_few_voxels_leave_it_to_interpolation(monkeypatch):
     """A sphere of three voxels across holds too few for a fit; around it a fit would not see it."""
     scene = lattice(0.1, 100.0, gradient=(0, 0, 1))
     field = fft.solve(scene, voxels=16)
@@ -91,13 +91,9 @@ def test_few_voxels_leave_it_to_interpolation():
         grids.append(fit.known)
         return fit
 
-    interpolation.fitted = seen
-    try:
-        field.flux_at(inside)
-        field.flux_at(beside)
-        field.flux_at(np.array([[0.05, 0.05, 0.05]]))
-    finally:
-        interpolation.fitted = kept
+    monkeypatch.setattr(interpolation, "fitted", seen)
+    for points in (inside, beside, np.array([[0.05, 0.05, 0.05]])):
+        field.flux_at(points)
     assert not grids[0].any() and not grids[1].any() and grids[2].all()
 
 

@@ -10,7 +10,7 @@ from demheat import Box, Layer, Material, Scene, Sphere, referee, solve
 from demheat.io import scenes
 from demheat.scene.inputs import vector
 from demheat.scene.shapes import Shape
-from demheat.scene.shapes.base import nearest
+from demheat.scene.shapes.periodic import nearest
 from demheat.scene.symmetry import alike_axes, mirrors, reduced
 from demheat.scene.volumes import fractions
 from references import exact, fem, fft, multipole
