@@ -20,7 +20,7 @@ def body(*shapes, matrix=MATRIX, **load):
     return Scene((1.0, 1.0, 1.0), Material(matrix), list(shapes), **load)
 
 
-# Spheres in cells are among the limits below.
+# Spheres that resist, in cells, are among the limits below.
 @pytest.mark.parametrize(("resistance", "expected"), [(0.2, 1.898010589), (0.0, 3.262566264)], ids=["film", "open"])
 def test_a_cubic_array(resistance, expected):
     """An eighth of it, as fine as the whole by default: planes of symmetry are walls."""
@@ -29,6 +29,13 @@ def test_a_cubic_array(resistance, expected):
     scene = Scene((0.5, 0.5, 0.5), Material(MATRIX), [ball], **X)
     # 6e-6 and 4.3e-5 were found of the whole: what these elements lack at contrast 100, too.
     assert_allclose(fem.solve(scene, size=1 / 26).conductivity / MATRIX, expected, rtol=1e-4)
+
+
+def test_a_cubic_array_in_its_cell():
+    """The level of the temperature is free there, and the perfect ball's with it."""
+    scene = body(Sphere(MIDDLE, lattice.radius("sc", 0.4), PERFECT), **CELL)
+    # 4.3e-5 was found.
+    assert_allclose(fem.solve(scene).conductivity / MATRIX, 3.262566264, rtol=1e-4)
 
 
 BODIES = {
