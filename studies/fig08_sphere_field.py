@@ -39,6 +39,7 @@ REASONS = {
     "heat lost over heat moved": "rounding; of elements the tolerance of each step's equations",
 }
 PAPER = printed("fig07_sphere")
+ITS_NETWORK = "Contacts, calibrated, 1e5 particles"
 TIMEOUT = 3600.0
 
 
@@ -78,8 +79,8 @@ def claims(df):
 
     Limits are two to three times what was found: checks that later code does as well. The paper's 1.93 K at the centre,
     its largest difference with 1e5 elements, is asked of its network within a half either way, and of 1000 particles of
-    Laguerre. That is a likeness of size alone: the network's largest error here is not at the centre (`worst_r_10`).
-    The order expected is two.
+    Laguerre. Its largest error is at the centre, as printed, in means over shells, whose limit is two of the twenty of
+    them (set when the value was seen): single particles scatter by as much (`worst_r_10`). The order expected is two.
     """
     df = sphere_in_time.solved(df)
     yield from present([*_accuracy(df), *_rest(df)])
@@ -96,12 +97,20 @@ def _accuracy(df):
     yield text, small, f"< {PAPER['centre_10s']}"
     network = pick(df, law="calibrated", particles=int(PAPER["particles"]))["worst_10"].max(skipna=False)
     ratio = network / PAPER["centre_10s"]
-    text = "Contacts, calibrated, 1e5 particles, 10 s: largest error of any particle, wherever it is, beside the "
-    text += "paper's 1.93 K at the centre, factor"
+    text = f"{ITS_NETWORK}, 10 s: largest error of any particle, wherever it is, beside the paper's 1.93 K at the "
+    text += "centre, factor"
     yield text, None if ratio != ratio else max(ratio, 1 / ratio), 1.5
+    text = f"{ITS_NETWORK}, 10 s: radius of the shell whose mean error is largest, R (the paper: at the centre)"
+    yield text, _widest(pick(df, law="calibrated", particles=int(PAPER["particles"]))), 0.1
     # Found 0.17 to 0.18 K at the coarsest edge.
     curved = pick(df, order=2, size=SIZES[2][0])["worst_10"].max(skipna=False)
     yield "FEM, P2, edges of 12 mm, 10 s: largest error, K", curved, 0.4
+
+
+def _widest(rows):
+    """Largest radius, over packings, of the middle of the shell whose mean is farthest off; None without rows."""
+    found = [(numbers(row["profile_r"]), np.abs(numbers(row["profile_error"]))) for _, row in rows.iterrows()]
+    return max((middle[np.nanargmax(size)] for middle, size in found), default=None)
 
 
 def _rest(df):

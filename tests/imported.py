@@ -2,6 +2,7 @@
 
 import ast
 import re
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -96,6 +97,13 @@ def imports(name, source, modules=MODULES, is_package=False):
                     raise ValueError(f"{name}, line {node.lineno}: what is imported cannot be read; see FINDERS")
             found |= told
     return found
+
+
+@cache
+def imports_of(name):
+    """What one of our modules imports."""
+    path = MODULES[name]
+    return imports(name, path.read_text(encoding="utf-8"), is_package=path.name == "__init__.py")
 
 
 def _told(node, modules):

@@ -1,6 +1,7 @@
 """What the rule of layers refuses and what it allows: sources of one line or two."""
 
 import pytest
+from imported import imports
 from test_layers import refused
 
 
@@ -22,7 +23,7 @@ from test_layers import refused
     ],
 )
 def test_a_breach_is_seen(name, source):
-    assert len(refused(name, source)) == 1
+    assert len(refused(name, imports(name, source))) == 1
 
 
 @pytest.mark.parametrize(
@@ -37,4 +38,4 @@ def test_a_breach_is_seen(name, source):
     ],
 )
 def test_what_is_allowed_is_not_refused(name, source):
-    assert refused(name, source) == []
+    assert refused(name, imports(name, source)) == []

@@ -1,17 +1,13 @@
 """No circle of modules that import each other, nor of folders."""
 
 import pytest
-from imported import MODULES, imports
+from imported import MODULES, imports, imports_of
 
 
-def edges(modules=MODULES):
+def edges():
     """Pairs (module, module of ours that it imports)."""
-    return [
-        (name, target)
-        for name, path in modules.items()
-        for target in imports(name, path.read_text(encoding="utf-8"), is_package=path.name == "__init__.py")
-        if target in modules and target != name
-    ]
+    pairs = [(name, target) for name in MODULES for target in imports_of(name)]
+    return [(name, target) for name, target in pairs if target in MODULES and target != name]
 
 
 def circle(pairs):

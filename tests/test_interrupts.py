@@ -89,7 +89,7 @@ def test_ctrl_c(stage, tmp_path):
     try:
         assert run.stdout.readline() == "begun\n", run.communicate()[1]
         with pytest.raises(subprocess.TimeoutExpired):
-            run.wait(0.7)
+            run.wait(0.3)
         run.send_signal(signal.SIGINT)
         _, said = run.communicate(timeout=60)
     finally:

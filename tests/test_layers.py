@@ -1,6 +1,6 @@
 """Who may import whom: the rooms of the house, and the one home of each library."""
 
-from imported import HOMES, MODULES, OURS, below, imports
+from imported import HOMES, MODULES, OURS, below, imports_of
 from rooms import FRONTS, LAYERS, ROOMS
 
 
@@ -9,12 +9,12 @@ def room_of(name):
     return max((key for key in LAYERS if below(name, key)), key=len)
 
 
-def refused(name, source, modules=MODULES, is_package=False):
-    """What a module imports and may not, as sentences."""
+def refused(name, targets):
+    """Of what a module imports that which it may not, as sentences."""
     own = (".".join(name.split(".")[:2]),) if room_of(name) == "studies" and name != "studies" else ()
     allowed = () if name.endswith("kernels") else (*LAYERS[room_of(name)], *own)
     wrong = []
-    for target in sorted(imports(name, source, modules, is_package)):
+    for target in sorted(targets):
         library = target.split(".")[0]
         if library in OURS:
             fits = any(below(target, other) for other in allowed)
@@ -30,8 +30,7 @@ def refused(name, source, modules=MODULES, is_package=False):
 
 
 def test_layers():
-    texts = {name: (path.read_text(encoding="utf-8"), path.name == "__init__.py") for name, path in MODULES.items()}
-    assert [said for name, (text, package) in texts.items() for said in refused(name, text, is_package=package)] == []
+    assert [said for name in MODULES for said in refused(name, imports_of(name))] == []
 
 
 def test_rooms_stand_on_rooms_before_them():

@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 from method_scenes import (
+    ALIKE,
     BOX,
     HIGH,
     LAYERS,
@@ -32,10 +33,6 @@ from references import bounds, multipole
 pytestmark = pytest.mark.filterwarnings("ignore:gaps beside inclusions")
 # Identities hold to the solvers' tolerances below, times the condition of the system and of a sum over the walls.
 IDENTITY = 1e-7
-
-
-# Another method here but for the sides of elements on balls, of which errors alone tell.
-ALIKE = ("fem-straight",)
 
 
 def claiming(*claims):

@@ -25,10 +25,10 @@ METHODS = (
         name="toy",
         title="toy of cells",
         resolution=Resolution("cells", lambda cells: 1 / cells, "{:.0f} cells along an edge"),
-        coarse=20,
-        errors=Errors(2.1e-2, 5.5e-3, 0.34),
+        coarse=14,
+        errors=Errors(3e-2, 8e-3, 0.45),
         # Theory 1, 1, 1/2 in the layer of cut cells.
-        orders=Orders((8, 12, 16), 0.5, 0.5, 0.2, repeats=3),
+        orders=Orders((6, 9, 12), 0.5, 0.5, 0.2, repeats=3),
         exceptions=CUT,
         refuses={"flux": "toy: walls", "pores": "toy: pores"},
     ),
@@ -136,7 +136,6 @@ import sys
 import warnings
 
 warnings.simplefilter("ignore")
-from studies.__main__ import study_names
 from studies.harness import runner, store, table
 from studies.harness.figures import look
 
@@ -156,7 +155,8 @@ claims, page = table.render(study, path)
 print(page)
 print()
 print("legend", look("toy"))
-print("studies", [each for each in study_names() if any(c.get("name") == "toy" for c in runner.load(each).CASES)])
+named = ("fig14_single_inclusion", "fig17_etc", "fig18_fields", "many_inclusions", "stability")
+print("without", [each for each in named if not any(c.get("name") == "toy" for c in runner.load(each).CASES)])
 """
 
 
@@ -201,5 +201,4 @@ def test_studies_tables_and_figures_pick_it_up(home, tmp_path):
     assert "| toy of cells, 8 cells along an edge" in said and "toy of cells: share of rows" in said
     legend, studies = said.splitlines()[-2:]
     assert legend.startswith("legend") and "'toy of cells'" in legend
-    for name in ("fig14_single_inclusion", "fig17_etc", "fig18_fields", "many_inclusions", "stability"):
-        assert name in studies
+    assert studies == "without []"

@@ -45,6 +45,7 @@ for name in ("benchmark", "studies", "tests"):
 """
 # And what is missing costs no other method its answer.
 COMMANDS = """
+print("=")
 from demheat import gallery
 from demheat.io import scenes
 from demheat.terminal.commands import main
@@ -104,22 +105,26 @@ def test_it_has_two_packages_and_their_data(wheel):
 def place(wheel, tmp_path_factory):
     """Where the wheel is installed."""
     found = tmp_path_factory.mktemp("place")
-    words = ["-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", str(found), str(wheel)]
-    subprocess.run([sys.executable, *words], check=True)
+    # As it is; nothing is compiled that is not imported.
+    words = ["--quiet", "--no-deps", "--no-index", "--no-compile", "--target", str(found), str(wheel)]
+    subprocess.run([sys.executable, "-m", "pip", "install", *words], check=True)
     return found
 
 
-def _run(code, place, folder):
+@pytest.fixture(scope="module")
+def printed(place, tmp_path_factory):
     """Lines that a program prints in a folder, without the clone, which an editable install puts on the path."""
     paths = {"PYTHONPATH": f"{place}:{sysconfig.get_path('purelib')}:{sysconfig.get_path('platlib')}"}
-    words = [sys.executable, "-S", "-c", HEAD + code]
+    words, folder = [sys.executable, "-S", "-c", HEAD + CODE + COMMANDS], tmp_path_factory.mktemp("empty")
     done = subprocess.run(words, cwd=folder, env=_environment() | paths, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    return done.stdout.splitlines()
+    lines = done.stdout.splitlines()
+    at = lines.index("=") + 1
+    return lines[: at - 1], lines[at:]
 
 
-def test_it_works_alone(place, tmp_path):
-    file, values, chosen, *told = _run(CODE, place, tmp_path)
+def test_it_works_alone(place, printed):
+    file, values, chosen, *told = printed[0]
     assert file.startswith(str(place)) and chosen == "exact exact"
     dem, true = map(float, values.split())
     # 1000 particles err by .2 %.
@@ -133,18 +138,18 @@ def test_it_works_alone(place, tmp_path):
     assert told[4:] == [f"No module named '{name}'" for name in ("benchmark", "studies", "tests")]
 
 
-def test_commands_go_on_without_what_is_missing(place, tmp_path):
-    printed = _run(COMMANDS, place, tmp_path)
+def test_commands_go_on_without_what_is_missing(printed):
+    said = printed[1]
     # Its status: one method failed. What follows is help.
-    end = printed.index("1")
-    lines = {line.split()[0]: line for line in printed[:end] if line.split()}
+    end = said.index("1")
+    lines = {line.split()[0]: line for line in said[:end] if line.split()}
     assert float(lines["exact"].split()[1]) == pytest.approx(42.6403, rel=1e-5)
     assert float(lines["dem"].split()[1]) == pytest.approx(42.6403, rel=5e-3)  # 1000 particles
     needs = "pyfftw, which is not installed: pip install 'demheat[fft]'"
     assert lines["fft"] == f"fft failed: references.fft needs {needs}"
     assert "no picture: a picture needs matplotlib" in lines["rows"]
-    told = " ".join(" ".join(printed[end:]).split())
-    assert printed[-1] == "0" and f"not installed: fft needs {needs}" in told
+    told = " ".join(" ".join(said[end:]).split())
+    assert said[-1] == "0" and f"not installed: fft needs {needs}" in told
 
 
 def _environment():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from method_scenes import METHODS, Estimated, allowed, answered, asked
+from method_scenes import ALIKE, METHODS, Estimated, allowed, answered, asked
 from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat import Flux, Layer, Material, Scene, Sphere
@@ -14,8 +14,7 @@ LAYER, THIN = Layer(1, 0.31, 0.55, PORE), Layer(1, 0.81, 0.93, PORE)
 BALL = Sphere((0.07, 0.45, 0.98), 0.33, PORE)
 X, Y, OBLIQUE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1.0, 2.0, 0.0)
 WALLS = {"y-": 20.0, "y+": 50.0}
-# Straight elements are "fem" but for the sides of balls.
-STEADY = [name for name, method in METHODS.items() if method.call != "evolve" and name != "fem-straight"]
+STEADY = [name for name, method in METHODS.items() if method.call != "evolve" and name not in ALIKE]
 every = pytest.mark.parametrize("name", STEADY)
 
 

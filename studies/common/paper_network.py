@@ -86,6 +86,13 @@ def calibrated(packing, law, held):
 
 def solved(scenes, packing, held, replicas=1):
     """Fields of scenes of one box by one packing, and its C_t."""
+    row, each = in_turn(scenes, packing, held, replicas)
+    fields = dict(each)
+    return fields, row | told(list(fields.values())[-1])
+
+
+def in_turn(scenes, packing, held, replicas=1):
+    """C_t of a packing, and names and fields of scenes of one box by it, one after another: large ones fill memory."""
     from dataclasses import replace
 
     from demheat import dem
@@ -95,9 +102,12 @@ def solved(scenes, packing, held, replicas=1):
     row = calibrated(packing, law, held)
     law = replace(law, factor=list(row.values())[-1])
     whole = replicate(packing, (replicas,) * 3) if replicas > 1 else packing
-    fields = {name: dem.solve(scene, law=law, packing=whole) for name, scene in scenes.items()}
-    last = list(fields.values())[-1]
-    return fields, row | {name: last.stats.get(name) for name in ("unknowns", "iterations", "residual", "mean_radius")}
+    return row, ((name, dem.solve(scene, law=law, packing=whole)) for name, scene in scenes.items())
+
+
+def told(field):
+    """What a row keeps of how a field was found."""
+    return {name: field.stats.get(name) for name in ("unknowns", "iterations", "residual", "mean_radius")}
 
 
 def fields_and_row(scenes, packing, held, particles, seed, replicas=1):
@@ -105,6 +115,15 @@ def fields_and_row(scenes, packing, held, particles, seed, replicas=1):
     one = packed(_size(scenes), packing, held, particles, seed, replicas)
     fields, row = solved(scenes, one, held, replicas)
     return fields, row | {column: unscaled(field) for column, field in fields.items()}
+
+
+def row_of(scenes, packing, held, particles, seed, replicas=1):
+    """The row of a case alone, no two of whose fields are there at once."""
+    one = packed(_size(scenes), packing, held, particles, seed, replicas)
+    row, each = in_turn(scenes, one, held, replicas)
+    for column, field in each:
+        row |= told(field) | {column: unscaled(field)}
+    return row
 
 
 def _size(scenes):

@@ -14,7 +14,7 @@ def _cubes(held):
 
 def network_row(held, **case):
     """All scenes by one packing of the network."""
-    return paper_network.fields_and_row(_cubes(held), held=held, **case)[1]
+    return paper_network.row_of(_cubes(held), held=held, **case)
 
 
 def warm_up(held, **case):

@@ -12,7 +12,7 @@ def _cells(held):
 
 def network_row(held, **case):
     """All first cells by one packing of the network."""
-    return paper_network.fields_and_row(_cells(held), held=held, **case)[1]
+    return paper_network.row_of(_cells(held), held=held, **case)
 
 
 def warm_up(held, **case):

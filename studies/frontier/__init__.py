@@ -136,12 +136,15 @@ def warming(df):
 def notes(df):
     """Who wins, in words made of the rows."""
     from studies.common.searches import means
+    from studies.frontier import second
 
     if not means.searched(df):
         yield "No search has been run on a quiet machine yet: rows hold a conductivity at one value each, and no costs."
         return
     for target in (1.0, 0.1, 0.01):
         yield means.in_words(df, "conductivity", target)
+    if told := second.in_words(df):
+        yield told
 
 
 def verdict(df):

@@ -7,7 +7,7 @@ import numpy as np
 from demheat import referee
 from studies.common.searches import guesses, means
 from studies.common.searches.scenes import SCENES
-from studies.frontier import advice
+from studies.frontier import advice, second
 
 # Per cent, of half of the scenes, at the points that stand for rows: ways from the reference, degree 2.
 APART = {"dem": 0.4, "fft": 0.8, "fem-p1": 4.0}
@@ -33,3 +33,4 @@ def all_claims(df):
     yield "FEM at its point: what extrapolation changes, median over scenes, %", 100 * float(np.median(closer)), 0.12
     yield from guesses.guess(each, "conductivity")
     yield from advice.claims(df)
+    yield from second.claims(df)

@@ -6,16 +6,23 @@ import math
 
 from studies.harness.store import MADE, case_key
 
-# Parameters of a case that say which code makes its row, and not how much of it.
-KINDS = ("part", "name", "method", "law", "integrator", "scheme", "rule", "packing", "held", "family")
-# Those of them that say so in every study.
+# Parameters of a case that say in every study which code makes its row.
 CODE = ("method", "law", "integrator", "scheme", "rule", "packing")
 
 
 def group_of(study, case):
-    """What a row stands or falls with, in its study: `KINDS`, and what a study names besides in `BY_ITSELF`."""
-    kinds = (*KINDS, *getattr(study, "BY_ITSELF", ()))
-    return tuple((kind, case[kind]) for kind in kinds if case.get(kind) is not None)
+    """What a row stands or falls with, in its study: what its case says in words, and what stands by itself there.
+
+    Numbers say how much of a thing there is, words which thing it is.
+    """
+    named = by_itself(study)
+    kinds = {name: value for name, value in case.items() if isinstance(value, str) or name in named}
+    return tuple((name, value) for name, value in kinds.items() if value is not None)
+
+
+def by_itself(study):
+    """Parameters of which no value's rows are borne out by another's, however long these take."""
+    return getattr(study, "BY_ITSELF", ())
 
 
 def cheapest(study, rows, cases):
@@ -39,15 +46,16 @@ def cost(row):
         return math.inf
 
 
-def followed(costs, dear):
+def followed(costs, dear, apart=None):
     """Of each group whose cheapest row takes more than `dear` seconds those whose rows are looked at for it.
 
     Groups are pairs of a study's name and what `group_of` gives. A dear one follows all that the same code makes, of
-    its study or, if it has none, of others; where there are none either, its own row is looked at.
+    its study or, if it has none, of others; where there are none either, its own row is looked at. What is `by_itself`
+    in a study, `apart`, is code of its own.
     """
-    looked, found = {}, {}
+    looked, found, apart = {}, {}, apart or {}
     for each in sorted(costs, key=costs.get):
-        alike = looked.setdefault(_code(each[1]), [])
+        alike = looked.setdefault(_code(each[1], apart.get(each[0], ())), [])
         leaders = [other for other in alike if other[0] == each[0]] or alike
         if leaders and costs[each] > dear:
             found[each] = leaders
@@ -56,6 +64,6 @@ def followed(costs, dear):
     return found
 
 
-def _code(group):
+def _code(group, apart):
     """What says in every study which code it is, and what its own study names."""
-    return tuple(pair for pair in group if pair[0] in CODE or pair[0] not in KINDS)
+    return tuple(pair for pair in group if pair[0] in (*CODE, *apart))

@@ -7,6 +7,7 @@ from html import escape
 from pathlib import Path
 
 from studies.harness import sound
+from studies.harness.outcomes import held_to
 from studies.harness.pictures import embedded
 
 CLASSES = {"ok": "ok", "FAIL": "fail", "not judged": "open"}
@@ -27,7 +28,7 @@ summary { cursor: pointer; padding: .6rem 0; overflow-wrap: anywhere; }
 summary b { margin-right: .4rem; } summary small { display: block; color: #555; }
 .ok, .fail, .open { font-weight: 600; white-space: nowrap; }
 .ok { color: #116329; } .fail { color: #a40e26; } .open { color: #7a5200; }
-.first li { margin: .5rem 0; } .first small { display: block; color: #555; }
+.first li { margin: .5rem 0; } li small { display: block; color: #555; }
 .note { background: #fff6df; border-left: .3rem solid #e0a800; padding: .5rem .8rem; }
 """
 # A link to a study opens it; browsers that do so themselves do it twice.
@@ -49,7 +50,7 @@ def page(found, first, figures, out):
         '<h2 id="first">Ten claims first</h2>',
         f'<ol class="first">{"".join(_first(*each) for each in first)}</ol>',
         '<h2 id="figures">Figures of the papers</h2>',
-        _mapped(figures, {each.name for each in found}),
+        _mapped(figures, found),
         '<h2 id="all">All studies</h2>',
         *(_chapter(each, Path(out)) for each in found),
     ]
@@ -73,14 +74,24 @@ def _first(name, claim):
     return f"<li>{verdict} {escape(claim.sentence)}{value}<small>{limit}{where}</small></li>"
 
 
-def _mapped(figures, there):
-    papers = dict.fromkeys(paper for paper, _, name in figures if name in there)
-    return "".join(f"<h3>{escape(each)}</h3><ul>{_of_paper(each, figures, there)}</ul>" for each in papers)
+def _mapped(figures, found):
+    there = {each.name for each in found}
+    papers = dict.fromkeys(paper for paper, _, name, _ in figures if name in there)
+    return "".join(f"<h3>{escape(each)}</h3><ul>{_of_paper(each, figures, found)}</ul>" for each in papers)
 
 
-def _of_paper(paper, figures, there):
-    lines = [(what, name) for each, what, name in figures if each == paper and name in there]
-    return "".join(f'<li>{escape(what)}: <a href="#{name}">{name}</a></li>' for what, name in lines)
+def _of_paper(paper, figures, found):
+    asked = [(what, name, held_to(found, name, words)) for each, what, name, words in figures if each == paper]
+    return "".join(
+        f'<li>{escape(what)}: <a href="#{name}">{name}</a>{"".join(_outcome(*each) for each in claims)}</li>'
+        for what, name, claims in asked
+        if claims is not None
+    )
+
+
+def _outcome(outcome, claim, why):
+    verdict = f'<span class="{CLASSES[claim.verdict]}">{outcome}</span>'
+    return f"<small>{verdict} {escape(claim.sentence)}: {claim.value:.3g} ({escape(claim.limit)}) {escape(why)}</small>"
 
 
 def _chapter(each, folder):

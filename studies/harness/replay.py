@@ -1,8 +1,8 @@
 """Stored rows made again: what they hold must come back, within each column's tolerance.
 
-Rows of one study that share a method, a law and the like stand or fall together: a change of code that moves one of
-them moves the others. So an older row is borne out by the cheapest of its group, made again; where even that one takes
-long and only a look is wanted, by those of groups that the same code makes (`groups.followed`).
+Rows of one study that differ in numbers alone stand or fall together: a change of code that moves one of them moves the
+others. So an older row is borne out by the cheapest of its group, made again; where even that one takes long and only a
+look is wanted, by those of groups that the same code makes (`groups.followed`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from queue import SimpleQueue
 from demheat.runtime.rows import each_kept
 from studies.harness import provenance, runner
 from studies.harness.forked import forking
-from studies.harness.groups import cheapest, cost, followed, group_of
+from studies.harness.groups import by_itself, cheapest, cost, followed, group_of
 from studies.harness.provenance import of_this_code
 from studies.harness.sound import held, proved
 from studies.harness.store import add_rows, case_key, check_writable, read_rows
@@ -113,8 +113,9 @@ def bear_out(studies, out, *, quick=False, dear=math.inf, say=print, compute=Non
     """
     groups = _grouped(studies, out, quick)
     older = {each: task for each, (task, _, _) in groups.items() if task}
+    apart = {name: by_itself(study) for name, study in studies.items()}
     told_of = {each: seconds for each, (task, seconds, before) in groups.items() if task or before is not None}
-    following = {each: leaders for each, leaders in followed(told_of, dear).items() if each in older}
+    following = {each: leaders for each, leaders in followed(told_of, dear, apart).items() if each in older}
     known = {each: before for each, (task, _, before) in groups.items() if before or not task}
     tasks = [older[each] for each in sorted(older, key=told_of.get) if each not in following and each not in known]
     if older:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from demheat.runtime.paths import replaced
 from studies.harness import explained, runner, sound
 from studies.harness.claims import NEAR, Claim
+from studies.harness.outcomes import held_to
 from studies.harness.table import render
 
 VERDICTS = ("ok", "FAIL", "not judged")
@@ -83,12 +84,10 @@ def write(found, out, contents):
 
 def readme(found, first, figures):
     """The short page that leads to those of the studies, in Markdown."""
-    there = {each.name for each in found}
     claims = [
         f"| {each.verdict} | {_cell(each.sentence)} | {each.value:.3g} | {each.limit} | [{name}]({name}.md) |"
         for name, each in first
     ]
-    mapped = [f"| {paper} | {what} | [{name}]({name}.md) |" for paper, what, name in figures if name in there]
     lines = [_line(each) for each in found]
     return "\n".join(
         [
@@ -102,8 +101,10 @@ def readme(found, first, figures):
             "|  | claim | value | limit | study |\n|---|---|--:|---|---|",
             *claims,
             "\n## Figures of the papers\n",
-            "| paper | what | study |\n|---|---|---|",
-            *mapped,
+            "What a paper prints, asked of its own network or rule; nothing is said where it prints no number that"
+            " could be missed.\n",
+            "| paper | what | study | | claim | value | limit | why |\n|---|---|---|---|---|--:|---|---|",
+            *(line for each in figures for line in _of_figure(found, *each)),
             "\n## All studies\n",
             "| study | what | claims | rows | whose costs do not count |\n|---|---|---|--:|---|",
             *lines,
@@ -116,6 +117,16 @@ def readme(found, first, figures):
             "",
         ]
     )
+
+
+def _of_figure(found, paper, what, name, words):
+    asked, head = held_to(found, name, words), f"| {paper} | {what} | [{name}]({name}.md) |"
+    if asked == []:
+        return [f"{head} | | | | |"]
+    return [
+        f"{head} {outcome} | {_cell(claim.sentence)} | {claim.value:.3g} | {claim.limit} | {_cell(why)} |"
+        for outcome, claim, why in asked or ()
+    ]
 
 
 def _near(found):

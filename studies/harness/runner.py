@@ -13,7 +13,7 @@ A study is a module with
   `warm_up(**case)`, untimed; `again(**case)`, of a row that is made for its values alone what is no matter of costs,
   where not all of `run` is; `table(df)`, what to print, with its docstring as caption; `notes(df)`, sentences below it
   that are made of the rows; `words(df)`, what other pages say of it; `TIMEOUT`, seconds per row;
-  `BY_ITSELF`, parameters of which no value's rows are borne out by another's (`groups.KINDS`);
+  `BY_ITSELF`, parameters of which no value's rows are borne out by another's (`groups`);
   `TOLERANCES`, by columns how near values must come that are made again (`tolerance.TOLERANCES`), and `COMPARED_AS`, of
   columns whose cells hold more than values, text -> what of it is compared;
   `REPEATS`, how often a short `run` is called at most (`repeated.RUNS`); `COSTS`, columns of costs that are not called

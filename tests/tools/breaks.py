@@ -1,25 +1,19 @@
-"""Break the code in small ways, one at a time, and look which test sees it.
+"""Break the code in small ways that were chosen, one at a time, and look which test sees it.
 
-    python tests/tools/breaks.py 100 --seed 7 --out breaks.csv
+    python tests/tools/breaks.py tests/tools/chosen.csv --out seen.csv [--near] [--part 1/4]
 
-draws breaks by a seed over all modules of demheat, references and studies/harness (`mutants` says which), applies each
-in a throw-away copy of the tree and runs tests in it, nearest first, until one fails: those named after the module,
-those that import it, the rest of their folder, those of all methods. A test that runs over its limit has seen it too;
-one that fails in the sound copy as well says nothing and is left out. Breaks already in the table are passed over.
+tries the breaks of a list (columns module, before, after, meaning; `before` stands once in the module), each in a
+throw-away copy of the tree, where tests run, nearest first, until one fails: those named after the module, those that
+import it, the rest of their folder, those of all methods, then all of `make test`; with --near only those of the
+module's folder. A test that runs over its limit has seen it too; one that fails in the sound copy as well says nothing
+and is left out. Breaks already in the table are passed over.
 
-    python tests/tools/breaks.py --from tests/tools/chosen.csv --out seen.csv [--near] [--part 1/4]
-
-tries the breaks of a list instead (columns module, before, after, meaning; `before` stands once in the module), and
-asks all of `make test`, nearest first; with --near only the tests of the module's folder.
-
-In the table `caught` is yes, no, or ? (see `note`); "equal" is written by hand for a break that changes no result, with
-the reason in `note`.
+In the table `caught` is yes or no.
 """
 
 import argparse
 import csv
 import os
-import random
 import re
 import shutil
 import signal
@@ -31,11 +25,7 @@ from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from tools.mutants import Mutant, mutants  # noqa: E402
-
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = ("demheat", "references", "studies/harness")
 # Parts of the tree that tests need.
 NEEDED = ("demheat", "references", "studies", "tests", "results", "docs", "benchmark", "examples", "*.md", "*.toml")
 NEEDED += ("Makefile", "CITATION.cff", "LICENSE")
@@ -48,6 +38,25 @@ COLUMNS = ("module", "line", "kind", "before", "after", "caught", "by", "note")
 TEST, CALL = 60, 1500
 
 
+class Mutant(NamedTuple):
+    """One break: where in the text, what stands there and what instead."""
+
+    line: int
+    start: int
+    end: int
+    kind: str
+    before: str
+    after: str
+
+    def apply(self, text):
+        """The broken source."""
+        return text[: self.start] + self.after + text[self.end :]
+
+    def words(self):
+        """Both sides in one line."""
+        return " ".join(self.before.split()), " ".join(self.after.split())
+
+
 class Break(NamedTuple):
     """A break of a module."""
 
@@ -57,17 +66,6 @@ class Break(NamedTuple):
     def key(self):
         """What finds it in the table."""
         return (self.module.as_posix(), str(self.mutant.line), self.mutant.kind, *self.mutant.words())
-
-
-def drawn(count, seed, root=ROOT, packages=PACKAGES):
-    """Breaks drawn without repetition: each place is as likely, a larger count begins with the same ones."""
-    generator, places = random.Random(seed), []
-    for package in packages:
-        for path in sorted((root / package).rglob("*.py")):
-            module = path.relative_to(root)
-            places += [(module, choices) for choices in mutants(path.read_text(encoding="utf-8"))]
-    generator.shuffle(places)
-    return [Break(module, random.Random(f"{seed}.{k}").choice(each)) for k, (module, each) in enumerate(places[:count])]
 
 
 def listed(path, root=ROOT):
@@ -272,31 +270,20 @@ def run(breaks, out, *, jobs=1, wide=True, rest=False, root=ROOT, limit=TEST):
 def main():
     """The command line."""
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    words.add_argument("count", type=int, nargs="?")
-    words.add_argument("--seed", type=int)
-    words.add_argument("--from", dest="list", type=Path, metavar="FILE", help="breaks of a list, drawn by nobody")
+    words.add_argument("list", type=Path, metavar="FILE", help="breaks that were chosen")
     words.add_argument("--part", default="1/1", metavar="K/N", help="every Nth of them, from the Kth on")
     words.add_argument("--out", type=Path, default=Path("breaks.csv"))
     words.add_argument("--jobs", type=int, default=1)
     words.add_argument("--near", action="store_true", help="only tests of the module's folder")
-    words.add_argument("--unseen", action="store_true", help="try again those of the table that nothing saw")
     given = words.parse_args()
-    if (given.list is None) == (given.count is None or given.seed is None):
-        words.error("give a count and --seed, or --from")
-    if given.unseen:
-        kept = [row for row in rows(given.out) if row["caught"] in ("yes", "equal")]
-        with given.out.open("w", newline="", encoding="utf-8") as file:
-            table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            table.writeheader()
-            table.writerows(kept)
-    breaks, gone = listed(given.list) if given.list else (drawn(given.count, given.seed), [])
+    breaks, gone = listed(given.list)
     for row in gone:
         print(f"{row['module']}: {row['before']!r} does not stand there once: passed over")
     part, parts = map(int, given.part.split("/"))
     near = given.near
-    run(breaks[part - 1 :: parts], given.out, jobs=given.jobs, wide=not near, rest=bool(given.list) and not near)
+    run(breaks[part - 1 :: parts], given.out, jobs=given.jobs, wide=not near, rest=not near)
     seen = [row["caught"] for row in rows(given.out)]
-    print(f"{seen.count('yes')} of {len(seen)} seen, {seen.count('equal')} change nothing")
+    print(f"{seen.count('yes')} of {len(seen)} seen")
 
 
 if __name__ == "__main__":

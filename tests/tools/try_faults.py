@@ -252,7 +252,7 @@ def _short(text, folder):
 
 
 def page(lines, seed):
-    """The page, from what was found: (fault, times, wrong, note)."""
+    """The page with what was found: (fault, times, wrong, note); what stands before and after its table stays."""
     table = ["| fault | times | wrong | what it said |", "|---|---|---|---|"]
     for name, times, wrong, note in lines:
         table.append(
@@ -260,27 +260,10 @@ def page(lines, seed):
         )
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, cwd=ROOT)
     made = f"Made by `tests/tools/try_faults.py` at commit {commit.stdout.strip()} on {date.today().isoformat()}"
-    return "\n".join([HEAD, f"{made}, seed {seed}; nothing in the table is typed by hand.", "", *table, "", TAIL])
-
-
-HEAD = """# Faults
-
-What happens when a run of a study is killed, or the machine lacks something. Nothing may be lost: rows stored stay
-stored, and all that are missing come with the next run. Nothing may be wrong: rows are those of a run that nobody
-disturbed, but for costs. What cannot go on says so in a line. Cheap ones are tried by `tests/test_faults.py` too.
-"""
-
-TAIL = """## Answers that are wrong without a word
-
-Studies attack those, on scenes drawn by seed: `hard_cases` ([what came out](../results/hard_cases.md)) asks of every
-answer that it be right, refused with its reason or warned of; `intervals` ([what came out](../results/intervals.md))
-that the interval that comes with it hold the truth. That one has tried nearly touching arrays, specks down to a
-five-hundredth of the cell, copies in boxes up to 1:20, coats and layers down to a thousandth and a ten-thousandth,
-fibres, square rods, checkerboards of boxes, boxes from face to face, rods of any sides beside their duals, unions,
-level sets told by distances, squares, cubes, clipped ones, signs and masks, images, spheres at random, needles and
-discs, half-spaces, and turned bodies, with contrasts from 1e-6 to 1e6. What it found and what was mended is in
-[estimates](decisions/estimates.md).
-"""
+    text = PAGE.read_text(encoding="utf-8")
+    head, tail = text[: text.index("Made by ")], text[text.index("\n## ") :]
+    lines = [f"{made}, seed {seed}; nothing in the table is typed by hand.", "", *table, ""]
+    return head + "\n".join(lines) + tail
 
 
 def main():

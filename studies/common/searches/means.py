@@ -90,10 +90,11 @@ def _cheapest(row, column, target):
 def best(df, scene, quantity, target, *, any_shape=True):
     """Who is the cheapest; None where nobody gets there."""
     ways = reached(df, scene, quantity, target, any_shape=any_shape)
-    return _best(ways) if ways else None
+    return best_of(ways) if ways else None
 
 
-def _best(ways):
+def best_of(ways):
+    """The same of ways that are known."""
     tied = tuple(each for each in _by_family(ways) if alike(ways[0], each))
     names = {each.family for each in tied}
     others = [each for each in ways if each.family not in names]
@@ -164,7 +165,7 @@ def _theirs(df, target):
     every = [ways for ways in every if any(WAYS[each.way].spheres for each in ways)]
     won, tied, lost = [], 0, []
     for ways in every:
-        found, own = _best(ways), next(each for each in ways if WAYS[each.way].spheres)
+        found, own = best_of(ways), next(each for each in ways if WAYS[each.way].spheres)
         if own not in found.tied:
             lost.append(own.cpu_s / ways[0].cpu_s)
         elif len(found.tied) > 1:
@@ -248,6 +249,7 @@ def _none(number):
 __all__ = [
     "TARGETS",
     "best",
+    "best_of",
     "counted",
     "in_words",
     "judged",

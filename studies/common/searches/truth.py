@@ -29,8 +29,6 @@ POINTS, SEED = 200, 2027
 ACCURACY = {"5000 spheres": 1e-5, "3000 spheres": 1e-5, "1000 spheres": 1e-6, "unequal, f = .5": 1e-6}
 USUAL, TIMES = 1e-7, 3.0
 CLOSED = 1e-9
-# Of the field at points: multipoles' own largest term there tells, closed forms have so many digits.
-FIELD = 1e-5
 WITNESSES = ("exact", "multipole")
 
 

@@ -9,9 +9,17 @@ from numpy.testing import assert_allclose
 from demheat import Field, Layer, Material, Samples, Scene
 from references import exact, fem
 
-pandas = pytest.importorskip("pandas")
-xarray = pytest.importorskip("xarray")
 BOX = Scene((1.0, 2.0, 0.5), Material(2.0), [Layer(0, 0.25, 0.75, Material(4.0))], walls={"x-": 0.0, "x+": 1.0})
+
+
+@pytest.fixture(scope="module")
+def pandas():
+    return pytest.importorskip("pandas")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def xarray():
+    return pytest.importorskip("xarray")
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +27,7 @@ def field():
     return exact.solve(BOX, points_per_axis=4)
 
 
-def test_samples_are_rows(field):
+def test_samples_are_rows(field, pandas):
     own, table = field.samples, field.to_dataframe()
     assert list(table) == ["x", "y", "z", "volume", "temperature", "phase", "flux_x", "flux_y", "flux_z"]
     assert np.array_equal(table[["x", "y", "z"]], own.points) and np.array_equal(table["temperature"], own.temperature)
@@ -55,7 +63,7 @@ def test_what_has_no_voxels_is_evaluated(field):
         made.to_xarray(cells=0)
 
 
-def test_a_stored_field_answers_what_it_can(field):
+def test_a_stored_field_answers_what_it_can(field, pandas):
     """All that its samples tell; what lies between them it says it has not."""
     again = pickle.loads(pickle.dumps(field))
     assert again.conductivity == field.conductivity and hash(again.scene) == hash(field.scene)

@@ -14,10 +14,10 @@ def group(**kinds):
 
 
 def test_what_a_row_stands_or_falls_with():
-    case = {"name": "dem", "scene": "third", "particles": 10, "seed": 0, "method": "dem", "law": None, "packing": "lsa"}
-    assert groups.group_of(SimpleNamespace(), case) == group(name="dem", method="dem", packing="lsa")
-    apart = SimpleNamespace(BY_ITSELF=("scene",))
-    assert groups.group_of(apart, case) == group(name="dem", method="dem", packing="lsa", scene="third")
+    case = {"name": "dem", "scene": "third", "particles": 10, "seed": 0, "method": "dem", "law": None, "periodic": True}
+    assert groups.group_of(SimpleNamespace(), case) == group(name="dem", scene="third", method="dem")
+    apart = SimpleNamespace(BY_ITSELF=("seed", "law"))
+    assert groups.group_of(apart, case) == group(name="dem", scene="third", seed=0, method="dem")
 
 
 def test_a_row_that_was_refused_tells_of_no_number():
@@ -57,7 +57,9 @@ def test_a_dear_group_follows_those_of_its_study_that_the_same_code_makes():
 
 def test_a_dear_group_does_not_follow_one_that_stands_for_itself():
     one, other = (("method", "dem"), ("scene", "layers")), (("method", "dem"), ("scene", "spheres"))
-    assert groups.followed({("one", one): 1.0, ("one", other): 9.0}, dear=3.0) == {}
+    costs = {("one", one): 1.0, ("one", other): 9.0}
+    assert groups.followed(costs, dear=3.0, apart={"one": ("scene",)}) == {}
+    assert groups.followed(costs, dear=3.0) == {("one", other): [("one", one)]}
 
 
 def test_one_without_such_in_its_study_follows_those_of_all_others():

@@ -57,7 +57,8 @@ def reported(tiny, monkeypatch):
     monkeypatch.setattr("studies.__main__.study_names", lambda: [tiny.name, "brackets"])
     first = ((tiny.name, "squares are"), (tiny.name, "no such"), ("brackets", "Median"))
     chosen = SimpleNamespace(
-        HEADLINES=first, FIGURES=(("Paper & al.", "Fig. 1", tiny.name), ("Paper", "2", "brackets"))
+        HEADLINES=first,
+        FIGURES=(("Paper & al.", "Fig. 1", tiny.name, ("squares",)), ("Paper", "2", "brackets", ("Median",))),
     )
     monkeypatch.setattr("studies.__main__.contents", chosen)
     tiny.report = lambda *words: main(["report", "--out", str(tiny.out), *words])
@@ -136,9 +137,27 @@ def test_a_run_that_has_not_ended(reported, capsys):
 def test_the_contents_name_what_is_there():
     names = study_names()
     assert len(contents.HEADLINES) == 10
-    assert {name for name, _ in contents.HEADLINES} | {name for *_, name in contents.FIGURES} <= set(names)
-    figures = {name for name in names if re.match(r"fig\d|table\d", name)}
-    assert figures <= {name for *_, name in contents.FIGURES}
+    mapped = {name for _, _, name, _ in contents.FIGURES}
+    assert {name for name, _ in contents.HEADLINES} | mapped <= set(names)
+    assert {name for name in names if re.match(r"fig\d|table\d", name)} <= mapped
+
+
+@pytest.mark.parametrize(("name", "words"), [(name, words) for *_, name, words in contents.FIGURES])
+def test_what_papers_print_is_asked_of_claims_that_there_are(name, words):
+    claims = (RESULTS / f"{name}.md").read_text(encoding="utf-8").partition("## Claims")[2]
+    assert [each for each in words if each not in claims] == []
+
+
+def test_what_a_paper_prints_came_out_or_is_different(reported):
+    reported.report()
+    short = (reported.out / "README.md").read_text(encoding="utf-8")
+    line = f"| Paper & al. | Fig. 1 | [{reported.name}]({reported.name}.md) |"
+    assert f"{line} reproduced | squares are small | 4 | <= 100 |  |" in short and "| Paper | 2 |" not in short
+    page = Page((reported.out / "index.html").read_text(encoding="utf-8"))
+    assert "reproduced squares are small: 4 (<= 100)" in page.text
+    reported.write(limit=3)
+    reported.report()
+    assert f"{line} different | squares" in (reported.out / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(("name", "words"), contents.HEADLINES)
