@@ -24,7 +24,7 @@ FIGURES = (
     (HADDAD, "Fig. 3", "fig03_calibration", ("C_t off the printed", "lsa packings, as in the paper, 1e5")),
     (HADDAD, "calibration, all it prints at once", "ct_search", ("All that is printed at once",)),
     (HADDAD, "Fig. 5, Table 1", "fig05_slab", ("Contacts, temperatures in centres as in the paper",)),
-    (HADDAD, "Fig. 7", "fig07_sphere", (NETWORK + "as the paper has it, 1e5",)),
+    (HADDAD, "Fig. 7", "fig07_sphere", ("network as the paper has it, 1e5",)),
     (HADDAD, "Fig. 8", "fig08_sphere_field", ("beside the paper's", "whose mean error is largest")),
     (HADDAD, "Figs. 10 to 12", "fig10_halo", ("Paper's 27, 5, 2 % at once",)),
     (HADDAD, "Fig. 14", "fig14_single_inclusion", (NETWORK + "150000 particles, the best",)),

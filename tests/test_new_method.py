@@ -196,9 +196,9 @@ def test_the_suites_pick_it_up(home):
 def test_studies_tables_and_figures_pick_it_up(home, tmp_path):
     said = ran(home, "-c", STUDY, str(tmp_path))
     rows = [line for line in said.splitlines() if line.startswith("row")]
-    assert any(line.startswith("row ok name=toy") and "cells=8" in line for line in rows)
+    assert any(line.startswith("row ok name=toy") and "cells=6" in line for line in rows)
     assert any(line.startswith("row unsupported") and line.endswith("refused: toy: pores") for line in rows)
-    assert "| toy of cells, 8 cells along an edge" in said and "toy of cells: share of rows" in said
+    assert "| toy of cells, 6 cells along an edge" in said and "toy of cells: share of rows" in said
     legend, studies = said.splitlines()[-2:]
     assert legend.startswith("legend") and "'toy of cells'" in legend
     assert studies == "without []"

@@ -33,7 +33,7 @@ WAYS = {
     "laminate": lambda scene: fft.solve(scene, voxels=16, rule="laminate", threads=1),
     "links": lambda scene: fft.solve(scene, voxels=16, rule="links", threads=1),
     "plain": lambda scene: fft.solve(scene, voxels=16, rule="plain", threads=1),
-    "fem": lambda scene: fem.solve(scene, size=0.12),
+    "fem": lambda scene: fem.solve(scene, size=0.16),
 }
 
 

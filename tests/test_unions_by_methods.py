@@ -98,7 +98,7 @@ def eighth(contrast):
 NECKS = {
     "dem": lambda scene: solve(scene, particles=1000),
     "fft": lambda scene: fft.solve(scene, voxels=12, rule="laminate", threads=1),
-    "fem": lambda scene: fem.solve(scene, size=0.12),
+    "fem": lambda scene: fem.solve(scene, size=0.16),
 }
 
 
