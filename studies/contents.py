@@ -19,23 +19,23 @@ TERREROS = "Terreros, Iordanoff, Charles, Comput. Mater. Sci. 69 (2013) 46"
 NETWORK = "The paper's network, "
 TABLE_2 = "As in the paper, 1.5e5 elements, halo of 11: "
 # Paper, what of it, the study that does the same, and words of the claims that hold the paper's own network, or its own
-# rule, to what the paper prints; none where it prints no number that could be missed.
+# rule, to what the paper prints; or why there are none.
 FIGURES = (
-    (HADDAD, "Fig. 3", "fig03_calibration", ("C_t off the printed", "lsa packings, as in the paper, 1e5")),
+    (HADDAD, "Fig. 3", "fig03_calibration", ("C_t off the printed", "lsa packings, as in the paper")),
     (HADDAD, "calibration, all it prints at once", "ct_search", ("All that is printed at once",)),
     (HADDAD, "Fig. 5, Table 1", "fig05_slab", ("Contacts, temperatures in centres as in the paper",)),
     (HADDAD, "Fig. 7", "fig07_sphere", ("network as the paper has it, 1e5",)),
     (HADDAD, "Fig. 8", "fig08_sphere_field", ("beside the paper's", "whose mean error is largest")),
-    (HADDAD, "Figs. 10 to 12", "fig10_halo", ("Paper's 27, 5, 2 % at once",)),
+    (HADDAD, "Figs. 10 to 12", "fig10_halo", ("Paper's 27, 5, 2 % at once", "10000 particles and more: largest CoV")),
     (HADDAD, "Fig. 14", "fig14_single_inclusion", (NETWORK + "150000 particles, the best",)),
     (HADDAD, "Figs. 15 and 16, Table 2", "fig15_16_fields", (TABLE_2,)),
     (HADDAD, "Fig. 17", "fig17_etc", (NETWORK,)),
     (HADDAD, "Fig. 18, Table 3", "fig18_fields", (NETWORK,)),
     (HADDAD, "Table 3, its arrangement", "table3_search", ("Looks whose",)),
-    (HADDAD, "section 5 at full size", "many_inclusions", ("within the paper's 0.5 %",)),
-    (HADDAD, "zeta_2, left out as too costly", "zeta2", ()),
-    (HADDAD, "7 % to experiment", "resistance", ()),
+    (HADDAD, "section 5 at full size", "many_inclusions", "its own network of as many particles: Figs. 17 and 18"),
+    (HADDAD, "zeta_2, left out as too costly", "zeta2", "it prints no value"),
+    (HADDAD, "7 % to experiment", "resistance", "not reproducible: the experiment's values are not printed"),
     (TERREROS, "section 4, Table 1", "table1_platonic", ("largest difference from what is printed",)),
-    (TERREROS, "Fig. 10", "fig10_beam", ()),
+    (TERREROS, "Fig. 10", "fig10_beam", "curves alone are printed"),
     (TERREROS, "Figs. 12 to 15", "fig12_15_sheet", ("Platonic, 20000 particles: dispersion over packings",)),
 )

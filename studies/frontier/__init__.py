@@ -168,6 +168,13 @@ def beside_peers(df):
     return means.beside_peers(df)
 
 
+def on_a_second_machine(df):
+    """Whether the same methods win there."""
+    from studies.frontier import second
+
+    return second.in_words(df)
+
+
 def advised(df):
     """What `recommend` is worth."""
     from studies.frontier import advice

@@ -48,13 +48,13 @@ def in_words(df):
     closed = sum(each.method == "exact" for each in every)
     late = len(every) - closed - len(found)
     near = sum(each.off <= SAID for each in found)
-    offs, factors = [each.off for each in found], [each.factor for each in found]
+    offs, beside = [each.off for each in found], [each.other_s / each.took_s for each in found if each.other]
     return (
         f"Of {len(every)} pairs of scene and accuracy {closed} have a closed form; `effective` got there on "
         f"{len(found)} of the others within {ASKED_S:g} seconds, where `recommend` had said its cost within a "
-        f"factor of {SAID:g} on {near}, {statistics.median(offs):.2g} in the median and {max(offs):.2g} at most; it "
-        f"cost {statistics.median(factors):.2g} times the cheapest method's in the median and {max(factors):.2g} at "
-        f"most, and {statistics.median(_over(df, found)):.2g} times, in the median, what one solve of the right size "
+        f"factor of {SAID:g} on {near}, {statistics.median(offs):.2g} in the median and {max(offs):.2g} at most; in "
+        f"the same time another method got there on {len(beside)} of these"
+        f"{f', at {min(beside):.2g} times its cost or more' if beside else ''}; it cost {statistics.median(_over(df, found)):.2g} times, in the median, what one solve of the right size "
         f"costs whoever knows the truth; on {late} time was over."
     )
 

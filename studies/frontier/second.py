@@ -1,8 +1,9 @@
-"""The searches on a second machine: whether the same methods win there.
+"""The searches on a second machine: who wins there.
 
     python -m studies.frontier.second OUT/frontier.csv
 
-keeps of rows that were made elsewhere what they reach, and at what cost, in `second.csv` beside this file.
+keeps of rows that were made elsewhere what they reach, and at what cost, in `second.csv` beside this file. A scene of
+which a way was disturbed there, or is missing, is left out whole.
 """
 
 from __future__ import annotations
@@ -18,8 +19,11 @@ from studies.common.searches.search import TARGETS
 from studies.harness.sound import NOISY
 
 FILE = Path(__file__).with_name("second.csv")
-KEPT = ("scene", "way", "seconds", "conductivity", "extrapolated", "temperature", "noise", "commit", "when", "machine")
+KEPT = ("scene", "way", "seconds", "conductivity", "extrapolated", "trail")
+KEPT += ("noise", "triad_gbs", "commit", "when", "machine", "host")
 NAMES = {"dem": "the DEM", "fem": "finite elements", "fft": "the FFT"}
+# Accuracies at which it is told who wins, %.
+TOLD = (1.0, 0.1, 0.01)
 
 
 def keep(path):
@@ -41,12 +45,22 @@ def there():
     return pd.read_csv(FILE) if FILE.exists() else None
 
 
+def whole(df, other):
+    """Scenes of which every way that was searched here was searched there, with as many seconds."""
+    keys = ["scene", "way", "seconds"]
+    made = (means.longest(rows[rows["trail"].notna()]) for rows in (df, other))
+    here, elsewhere = (set(map(tuple, rows[keys].to_numpy())) for rows in made)
+    return [scene for scene in means.scenes_of(df) if {each for each in here if each[0] == scene} <= elsewhere]
+
+
 def reached(df, other):
     """Ways that get there, the cheapest first, here and there, by scene and accuracy."""
+    scenes = whole(df, other)
     return {
         (scene, target): [means.reached(rows, scene, "conductivity", target) for rows in (df, other)]
         for target in TARGETS
         for scene in means.judged(df, "conductivity", target)
+        if scene in scenes
     }
 
 
@@ -63,6 +77,11 @@ def families(best):
 def others(pairs):
     """Pairs on which another method is the cheapest, with no tie on either machine that would make it the same."""
     return {key: both for key, both in pairs.items() if not families(both[0]) & families(both[1])}
+
+
+def alone(pairs, number, name, target):
+    """On how many pairs to an accuracy a method wins without a tie, here (0) or there (1)."""
+    return sum(families(both[number]) == {name} for (_, to), both in pairs.items() if to == target)
 
 
 def factors(ways):
@@ -82,21 +101,40 @@ def in_words(df):
         return ""
     ways = reached(df, other)
     pairs = compared(ways)
-    same = sum(families(one) == families(two) for one, two in pairs.values())
     slower = ", ".join(f"{value:.2g} ({NAMES[name]})" for name, value in sorted(factors(ways).items()))
+    scenes = {scene for scene, _ in ways}
+    out = [scene for scene in means.scenes_of(df) if scene not in scenes]
+    return (
+        f"The searches on {len(scenes)} scenes were made once more on a second machine, with the same seconds, by "
+        f"commit {other['commit'].iat[0]} (of {', '.join(out)} rows are missing or disturbed there). There the same "
+        f"accuracy costs {slower} times as much, in the median. {_kept(pairs)} {_moved(pairs, ways)}"
+    )
+
+
+def _kept(pairs):
+    """Who wins alone, here and there, by accuracy."""
+    parts = [
+        f"to {target:g} % {', '.join(f'{NAMES[name]} on {_both(pairs, name, target)}' for name in NAMES)}"
+        for target in TOLD
+    ]
+    return f"Without a tie win, here and there, where somebody gets there on both: {'; '.join(parts)}."
+
+
+def _both(pairs, name, target):
+    return f"{alone(pairs, 0, name, target)} and {alone(pairs, 1, name, target)}"
+
+
+def _moved(pairs, ways):
+    """How many pairs have other winners, and how many only one machine knows."""
+    other = {key: both for key, both in pairs.items() if families(both[0]) != families(both[1])}
     told = "; ".join(
         f"{scene} to {target:g} % ({one.first.title} here, {two.first.title} there)"
         for (scene, target), (one, two) in others(pairs).items()
     )
-    gone = [scene for scene in means.scenes_of(df) if scene not in set(other["scene"])]
-    without = f" (but {', '.join(gone)})" if gone else ""
-    rest, another = len(pairs) - same - len(others(pairs)), len(others(pairs))
+    here, elsewhere = (sum(bool(both[k]) and not both[1 - k] for both in ways.values()) for k in (0, 1))
     return (
-        f"The searches{without} were made once more on a second machine, with the same seconds, by commit "
-        f"{other['commit'].iat[0]}. There the same accuracy costs {slower} times as much in the median, so less is "
-        f"reached. Of {len(pairs)} pairs of scene and accuracy to which some method for any shape gets on both, the "
-        f"cheapest is the same on {same}, with a tie on one of the machines on {rest}, and another on {another}"
-        f"{': ' if told else ''}{told}."
+        f"Of all {len(pairs)} pairs of scene and accuracy {len(other)} have other winners or ties, {len(others(pairs))}"
+        f" of them none in common{f' ({told})' if told else ''}; {here} are reached here alone, {elsewhere} there."
     )
 
 

@@ -8,15 +8,19 @@ from studies.harness.store import MADE, case_key
 
 # Parameters of a case that say in every study which code makes its row.
 CODE = ("method", "law", "integrator", "scheme", "rule", "packing")
+# Numbers that are other code by each of their values; and those that are at their ends.
+COUNTED, ENDED = ("order",), ("contrast",)
 
 
 def group_of(study, case):
     """What a row stands or falls with, in its study: what its case says in words, and what stands by itself there.
 
-    Numbers say how much of a thing there is, words which thing it is.
+    Numbers say how much of a thing there is, words which thing it is; so do yes and no, the degree of elements, and
+    contrasts of pores and perfect conductors.
     """
-    named = by_itself(study)
-    kinds = {name: value for name, value in case.items() if isinstance(value, str) or name in named}
+    named = (*by_itself(study), *COUNTED)
+    kinds = {name: value for name, value in case.items() if isinstance(value, str | bool) or name in named}
+    kinds |= {name: case[name] for name in ENDED if case.get(name) in (0.0, math.inf)}
     return tuple((name, value) for name, value in kinds.items() if value is not None)
 
 

@@ -81,12 +81,17 @@ def _mapped(figures, found):
 
 
 def _of_paper(paper, figures, found):
-    asked = [(what, name, held_to(found, name, words)) for each, what, name, words in figures if each == paper]
+    mine = [each for each in figures if each[0] == paper]
+    asked = [(what, name, words, held_to(found, name, words)) for _, what, name, words in mine]
     return "".join(
-        f'<li>{escape(what)}: <a href="#{name}">{name}</a>{"".join(_outcome(*each) for each in claims)}</li>'
-        for what, name, claims in asked
+        f'<li>{escape(what)}: <a href="#{name}">{name}</a>{_outcomes(claims, words)}</li>'
+        for what, name, words, claims in asked
         if claims is not None
     )
+
+
+def _outcomes(claims, words):
+    return "".join(_outcome(*each) for each in claims) if claims else f"<small>{escape(str(words))}</small>"
 
 
 def _outcome(outcome, claim, why):

@@ -101,8 +101,8 @@ def readme(found, first, figures):
             "|  | claim | value | limit | study |\n|---|---|--:|---|---|",
             *claims,
             "\n## Figures of the papers\n",
-            "What a paper prints, asked of its own network or rule; nothing is said where it prints no number that"
-            " could be missed.\n",
+            "What a paper prints, asked of its own network or rule. Reproduced: within the limit of the claim, which is"
+            " what is printed, its last digit, or, of Figs. 7 and 8, a factor.\n",
             "| paper | what | study | | claim | value | limit | why |\n|---|---|---|---|---|--:|---|---|",
             *(line for each in figures for line in _of_figure(found, *each)),
             "\n## All studies\n",
@@ -122,7 +122,7 @@ def readme(found, first, figures):
 def _of_figure(found, paper, what, name, words):
     asked, head = held_to(found, name, words), f"| {paper} | {what} | [{name}]({name}.md) |"
     if asked == []:
-        return [f"{head} | | | | |"]
+        return [f"{head} | | | | {_cell(words) if isinstance(words, str) else ''} |"]
     return [
         f"{head} {outcome} | {_cell(claim.sentence)} | {claim.value:.3g} | {claim.limit} | {_cell(why)} |"
         for outcome, claim, why in asked or ()

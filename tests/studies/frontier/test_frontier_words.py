@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from studies.common.searches import means
-from studies.frontier import advice
+from studies.frontier import advice, second
 
 
 def row(scene, way, seconds, spread=0.01):
@@ -114,3 +114,39 @@ def test_advice_is_judged_by_what_effective_did():
     assert "a factor of 3 on 0, 4 in the median" in said and said.endswith("on 1 time was over.")
     # Rows of `effective` are no search.
     assert set(means.longest(rows)["way"]) <= set(means.WAYS)
+
+
+SLOWER = pd.DataFrame(
+    [
+        row("third", "dem", 0.3),
+        row("third", "fem", 0.9),
+        # A tie here, on this machine the FFT alone; the DEM gets there on none but one.
+        row("half", "dem", 4.0),
+        row("half", "fft", 2.0),
+        row("unions", "dem", 1.0),
+        row("unions", "fem", 2.7),
+        row("gyroid", "dem", 1.0),
+        row("third", "multipole", 0.1),
+        row("half", "fem", 9.0),
+    ]
+)
+
+
+def test_who_wins_on_a_second_machine():
+    ways = second.reached(ROWS, SLOWER)
+    pairs = second.compared(ways)
+    assert [scene for scene, _ in pairs] == ["third", "half", "unions"]
+    # What ties on one of the machines is no other winner.
+    assert list(second.others(pairs)) == [("unions", 0.1)]
+    assert second.factors(ways) == pytest.approx({"dem": 3.5, "fem": 2.25, "fft": 2 / 1.3})
+    assert [second.alone(pairs, number, "fft", 0.1) for number in (0, 1)] == [0, 1]
+    # A scene of which a way is missing there is left out.
+    assert second.whole(ROWS, SLOWER.iloc[1:]) == ["half", "unions", "gyroid"]
+
+
+def test_rows_that_others_disturbed_are_not_kept(tmp_path, monkeypatch):
+    monkeypatch.setattr(second, "FILE", tmp_path / "second.csv")
+    rows = [row("third", "dem", 0.1) | {"noise": noise, "commit": "abc"} for noise in (0.01, 0.5)]
+    pd.DataFrame([*rows, row("third", "fem", None) | {"noise": 0.0, "trail": ""}]).to_csv(tmp_path / "all.csv")
+    assert second.keep(tmp_path / "all.csv") == 1
+    assert list(second.there()["noise"]) == [0.01]

@@ -15,9 +15,16 @@ def group(**kinds):
 
 def test_what_a_row_stands_or_falls_with():
     case = {"name": "dem", "scene": "third", "particles": 10, "seed": 0, "method": "dem", "law": None, "periodic": True}
-    assert groups.group_of(SimpleNamespace(), case) == group(name="dem", scene="third", method="dem")
+    assert groups.group_of(SimpleNamespace(), case) == group(name="dem", scene="third", method="dem", periodic=True)
     apart = SimpleNamespace(BY_ITSELF=("seed", "law"))
-    assert groups.group_of(apart, case) == group(name="dem", scene="third", seed=0, method="dem")
+    assert groups.group_of(apart, case) == group(name="dem", scene="third", seed=0, method="dem", periodic=True)
+
+
+@pytest.mark.parametrize(("contrast", "other"), [(10.0, False), (1e6, False), (0.0, True), (math.inf, True)])
+def test_pores_and_perfect_conductors_are_no_contrasts_between(contrast, other):
+    first, second = ({"order": 2, "contrast": each} for each in (100.0, contrast))
+    assert (groups.group_of(None, first) != groups.group_of(None, second)) is other
+    assert groups.group_of(None, first) == group(order=2)
 
 
 def test_a_row_that_was_refused_tells_of_no_number():

@@ -142,10 +142,10 @@ def test_the_contents_name_what_is_there():
     assert {name for name in names if re.match(r"fig\d|table\d", name)} <= mapped
 
 
-@pytest.mark.parametrize(("name", "words"), [(name, words) for *_, name, words in contents.FIGURES])
+@pytest.mark.parametrize(("name", "words"), [each[2:] for each in contents.FIGURES if isinstance(each[3], tuple)])
 def test_what_papers_print_is_asked_of_claims_that_there_are(name, words):
     claims = (RESULTS / f"{name}.md").read_text(encoding="utf-8").partition("## Claims")[2]
-    assert [each for each in words if each not in claims] == []
+    assert words and [each for each in words if each not in claims] == []
 
 
 def test_what_a_paper_prints_came_out_or_is_different(reported):
