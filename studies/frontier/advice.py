@@ -54,8 +54,9 @@ def in_words(df):
         f"{len(found)} of the others within {ASKED_S:g} seconds, where `recommend` had said its cost within a "
         f"factor of {SAID:g} on {near}, {statistics.median(offs):.2g} in the median and {max(offs):.2g} at most; in "
         f"the same time another method got there on {len(beside)} of these"
-        f"{f', at {min(beside):.2g} times its cost or more' if beside else ''}; it cost {statistics.median(_over(df, found)):.2g} times, in the median, what one solve of the right size "
-        f"costs whoever knows the truth; on {late} time was over."
+        f"{f', at {min(beside):.2g} times its cost or more' if beside else ''}; it cost "
+        f"{statistics.median(_over(df, found)):.2g} times, in the median, what one solve of the right size costs "
+        f"whoever knows the truth; on {late} time was over."
     )
 
 
