@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 AXES = "xyz"
-# Pixels along the longer side.
-PIXELS = 241
+# Pixels along the longer side: phases are told at once, fields may be fitted at each.
+PIXELS, FIELD_PIXELS = 241, 121
 LENGTHS = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"))
 # The matrix grey, then colours that the colour-blind tell apart; more conductivities than that share a scale.
 COLOURS = ("#d9d9d9", "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442")
@@ -59,7 +59,7 @@ def plot_scene(scene: Scene, *, pixels: int = PIXELS) -> Figure:
     return figure
 
 
-def plot_field(field: Field, *, axis: int | None = None, at: float | None = None, pixels: int = PIXELS) -> Figure:
+def plot_field(field: Field, *, axis: int | None = None, at: float | None = None, pixels: int = FIELD_PIXELS) -> Figure:
     """Temperature and size of the flux over a plane, as a matplotlib Figure.
 
     Parameters

@@ -10,8 +10,9 @@ import numpy as np
 
 from demheat.scene.bodies import inside
 
-# Cells along the longest side, of the scene and of a field; colours that the viewer tells apart.
-CELLS, FIELD_CELLS, MOST = 112, 48, 16
+# Cells along the longest side, of the scene and of a field, which may be fitted at each; colours that the viewer tells
+# apart.
+CELLS, FIELD_CELLS, MOST = 112, 36, 16
 NOTHING = 255
 
 

@@ -10,17 +10,25 @@ from demheat.terminal.commands import helps, main
 from demheat.terminal.commands.options import COMMANDS
 
 
-def test_every_command_has_an_example_that_works_in_an_empty_folder(capsys, tmp_path, monkeypatch):
+def test_every_command_has_an_example():
     assert set(helps.EXAMPLES) == set(COMMANDS)
-    # Answers to be judged are of another program.
-    for name, words in {name: each for name, each in helps.EXAMPLES.items() if name != "judge"}.items():
-        folder = tmp_path / name
-        folder.mkdir()
-        monkeypatch.chdir(folder)
-        for line in words.split(" && "):
-            program, *rest = line.split()
-            assert program == "demheat" and main(rest) == 0, capsys.readouterr().err
-        assert capsys.readouterr().out.startswith("written scene.toml")
+
+
+# Answers to be judged are of another program; a report of all methods, which takes long, has a test of its own.
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow) if name == "report" else name
+        for name in helps.EXAMPLES
+        if name != "judge"
+    ],
+)
+def test_an_example_works_in_an_empty_folder(name, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for line in helps.EXAMPLES[name].split(" && "):
+        program, *rest = line.split()
+        assert program == "demheat" and main(rest) == 0, capsys.readouterr().err
+    assert capsys.readouterr().out.startswith("written scene.toml")
 
 
 def test_what_comments_offer_is_valid(tmp_path, monkeypatch, capsys):
