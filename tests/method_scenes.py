@@ -14,9 +14,8 @@ from demheat.scene.volumes import fractions
 from studies.harness import methods
 
 METHODS = methods.all_methods()
-# Another method but for the sides of elements on balls, or for the conductivity of links and voxels that an interface
-# cuts: what they are asked for beside errors, that one is.
-ALIKE = ("fem-straight", "dem-arithmetic", "dem-mean", "fft-em-plain")
+# Another method but for the sides of elements on balls, of which errors alone tell.
+ALIKE = ("fem-straight",)
 # A box without any symmetry; spheres cross faces and an edge of the cell, walls cut them.
 BOX = (1.0, 1.2, 0.8)
 SPHERES = [((0.05, 0.45, 0.4), 0.3, 20.0), ((0.4, 1.0, 0.15), 0.3, 0.2)]

@@ -35,9 +35,8 @@ def errors(method, value):
     return np.mean(found, axis=0)
 
 
-# Errors of these at one size `test_methods` sees; each is another method here but for its links or sides, or solves the
-# same voxels by another scheme: `test-slow`.
-SLOW = ("dem-plain", "fem-straight", "fft-em")
+# Errors of these at one size `test_methods` sees; each is another method here but for its links or sides: `test-slow`.
+SLOW = ("dem-plain", "fem-straight")
 NAMES = [pytest.param(m, marks=pytest.mark.slow) if m.name in SLOW else m for m in REFINED if m.orders]
 
 

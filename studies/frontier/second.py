@@ -139,7 +139,10 @@ def _moved(pairs, ways):
 
 
 def claims(df):
-    """Whether who wins is a matter of the machine; the limit was set before the second one's rows were compared."""
+    """Whether who wins is a matter of the machine; the limit was set before the second one's rows were compared.
+
+    That a scene with gaps in its rows there is left out was chosen when they had been.
+    """
     other = there()
     if other is not None and means.searched(df):
         pairs = compared(reached(df, other))

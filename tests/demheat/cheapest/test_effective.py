@@ -235,7 +235,7 @@ def test_what_few_methods_take(name):
     found = effective(scene, accuracy=2e-2, method=("fft", "dem"))
     assert found.accuracy <= 2e-2 and not found.cut
     by = {"k(T)": solve, "infinite": solve}.get(name, fft.solve)
-    knobs = {"particles": 5000} if by is solve else {"voxels": 48}
+    knobs = {"particles": 20_000} if by is solve else {"voxels": 48}
     right = by(scene, **knobs).conductivity
     # What is right is right to a few thousandths itself.
     assert found.lower[1, 1] * (1 - 2e-3) <= right <= found.upper[1, 1] * (1 + 2e-3)

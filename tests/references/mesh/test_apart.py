@@ -174,9 +174,10 @@ COARSE = Scene(
 def test_a_mesh_is_the_same_whatever_was_meshed_before():
     first = mesh.make_round(COARSE, size=1.2e-4, order=2)
     mesh.make(ball(), size=0.3, order=1)
-    again = mesh.make_round(COARSE, size=1.2e-4, order=2)
-    assert again.stats["size"] == first.stats["size"]
-    assert np.array_equal(again.points, first.points) and np.array_equal(again.cells, first.cells)
+    for _ in range(2):
+        again = mesh.make_round(COARSE, size=1.2e-4, order=2)
+        assert again.stats["size"] == first.stats["size"]
+        assert np.array_equal(again.points, first.points) and np.array_equal(again.cells, first.cells)
 
 
 def test_crashes_name_the_scene(monkeypatch):

@@ -18,7 +18,7 @@ def test_round_bodies(domain, walls):
     of = Scene((1.0, 0.7, 1.0) if domain != "sphere" else (1.0,) * 3, UNIT, initial=0.0, domain=domain)
     lids = {"y-": math.pi / 4, "y+": math.pi / 4, "round": 0.7 * math.pi if domain != "sphere" else math.pi}
     loss = []
-    for size in (0.3, 0.15):
+    for size in (0.25, 0.125):
         made = make_round(of, size=size, order=2)
         on = space.tetrahedra(of, made)
         assert sorted(made.walls) == sorted(walls)
@@ -27,9 +27,9 @@ def test_round_bodies(domain, walls):
         assert_allclose(on.volumes.sum(), made.volumes.sum(), rtol=1e-12)
         loss.append(abs(made.stats["volume_error"]))
     # A quadratic surface errs by the fourth power of the edge in volume; chords would by the second.
-    assert loss[1] < 2e-4 and np.log2(loss[0] / loss[1]) > 3
-    straight = make_round(of, size=0.15, order=1)
-    assert 1e-3 < -straight.stats["volume_error"] < 0.04
+    assert loss[1] < 1e-4 and np.log2(loss[0] / loss[1]) > 3
+    straight = make_round(of, size=0.125, order=1)
+    assert 1e-3 < -straight.stats["volume_error"] < 0.03
 
 
 def test_other_errors_are_not_tried_again(monkeypatch):

@@ -32,10 +32,10 @@ def cell(*shapes, size=(1.0, 1.0, 1.0), **load):
 @pytest.mark.parametrize("name", SHAPES)
 def test_cells_repeat_and_phases_have_their_volumes(name):
     scene = cell(SHAPES[name])
-    mesh = make(scene, size=0.35)
-    # Second-order elements, half a radius long or less: their middles lie on the surface.
+    mesh = make(scene, size=0.25)
+    # Second-order elements, a third of a radius long: their middles lie on the surface.
     share = np.bincount(mesh.phase, mesh.volumes)[1]
-    assert_allclose(share, SHAPES[name].volume_in((1, 1, 1), periodic=True), rtol=8e-3)
+    assert_allclose(share, SHAPES[name].volume_in((1, 1, 1), periodic=True), rtol=2e-3)
     points = mesh.points[mesh.cells[:, :4]].mean(axis=1)
     assert np.mean(scene.phase_at(points) != mesh.phase) < 0.01
     high, low = mesh.pairs.T
@@ -60,7 +60,7 @@ def test_edges_are_short_in_gaps_between_fibres():
         balls = wanted_sizes(fibres(gap), 0.2).balls
         width = math.sqrt(gap / 4 * (0.25 - gap / 4))
         assert 0.499 * width < balls[:, 4].min() < 0.75 * width
-    mesh = make(fibres(0.1), size=0.3)
+    mesh = make(fibres(0.1), size=0.2)
     assert_allclose(np.bincount(mesh.phase, mesh.volumes)[1:], 0.2 * math.pi * 0.225**2, rtol=1e-3)
 
 

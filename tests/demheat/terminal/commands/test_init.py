@@ -14,15 +14,8 @@ def test_every_command_has_an_example():
     assert set(helps.EXAMPLES) == set(COMMANDS)
 
 
-# Answers to be judged are of another program; a report of all methods, which takes long, has a test of its own.
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=pytest.mark.slow) if name == "report" else name
-        for name in helps.EXAMPLES
-        if name != "judge"
-    ],
-)
+# Answers to be judged are of another program.
+@pytest.mark.parametrize("name", [name for name in helps.EXAMPLES if name != "judge"])
 def test_an_example_works_in_an_empty_folder(name, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for line in helps.EXAMPLES[name].split(" && "):
