@@ -25,6 +25,8 @@ BESIDE, FEW = (
     ("dem-plain", "dem-calibrated", "fft-plain", "fft-links", "fft-em", "fem-straight", "fem-p1", "multipole"),
     3,
 )
+# Limits from elsewhere: asked of intervals before there were any.
+ELSEWHERE = ("share of", "interval over the error", "over its error")
 MODULES = {"all": "studies.estimates.rows", "effective": "studies.estimates.reached"}
 PAPER = {}
 # Scenes that a method solves exactly do not tell what has moved on others.

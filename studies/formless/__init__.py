@@ -55,6 +55,8 @@ WALKS = (
 )
 # Voxels of certain bounds of checkerboards.
 CERTAIN = 128
+# Limits from elsewhere: two of a witness"s own intervals.
+ELSEWHERE = ("halves of their intervals",)
 MODULES = {"walkers": "references.walkers", "bracket-voxels": "references.bracket.voxels"}
 # On another processor they go other ways: two means are 1.4 of half an interval of 2 % apart, twice in a hundred times
 # as much again, and their lag may be the next.

@@ -19,6 +19,8 @@ Costs are those of a quiet machine, or none are stored: `python -m studies run f
 from studies.frontier.cases import QUICK_SECONDS, all_cases
 
 CASES = list(all_cases())
+# Limits from elsewhere: guessed or asked before there were rows.
+ELSEWHERE = ("Scenes on which", "recommend:", "effective:", "Pairs of scene")
 MODULES = {"ngsolve": "studies.peers.programs.ngsolve", "effective": "demheat.cheapest"}
 PAPER = {}
 # Limits that are far from the values, and why they are no nearer.

@@ -16,8 +16,12 @@ OPERATORS = {"<=": float.__le__, "<": float.__lt__, ">=": float.__ge__, ">": flo
 # Costs that do not count are drawn anew, each by a factor of one to three decades up, then by the same one down: the
 # largest and the least of some move by that. Twice, for ranks may stay as they were.
 DRAWS, DECADES = 2, (1.0, 3.0)
-# A claim that holds with no more room than this factor is a check that later code does as well.
-NEAR = 3.0
+# A claim that holds with no more room than this factor is a check that later code does as well, and called one, unless
+# its sentence says from where the limit is: print, a rate, statistics, another program or method, what was guessed. A
+# study's own words for that are in its ELSEWHERE.
+NEAR, CHECK = 3.0, "check"
+ELSEWHERE = ("paper", "printed", "order in ", "order of ", ": order", "exponent", "standard errors", "known")
+ELSEWHERE += ("standard deviations", "Voro++", "LAMMPS", "spheropack", "other program", "over Laguerre")
 COSTLY = "rests on costs that do not count"
 UNFINISHED = "rows are missing"
 
@@ -33,6 +37,7 @@ class Claim(NamedTuple):
     limit: str
     ok: bool
     why: str = ""
+    elsewhere: bool = False  # Whether its limit is from elsewhere than its value
 
     @property
     def failed(self):
@@ -50,8 +55,13 @@ class Claim(NamedTuple):
 
     @property
     def verdict(self):
-        """In a word or two: "ok", "FAIL", "not judged"."""
-        return "not judged" if self.why else "ok" if self.ok else "FAIL"
+        """In a word or two: "ok", "check", "FAIL", "not judged"."""
+        return "not judged" if self.why else "FAIL" if not self.ok else CHECK if self._near else "ok"
+
+    @property
+    def _near(self):
+        """Whether it says no more than that later code does as well; what is to be nothing, or equal, says more."""
+        return not self.elsewhere and 1.0 < self.room <= NEAR
 
 
 def claim(sentence, value, limit):
@@ -77,11 +87,12 @@ def judged(study, df):
     """
     bad = df[df["status"].isin(("failed", "timeout"))]
     found, error = _yielded(study, df)
-    unmoved = _unmoved(study, df, found)
+    unmoved, words = _unmoved(study, df, found), (*ELSEWHERE, *getattr(study, "ELSEWHERE", ()))
     later = UNFINISHED if unfinished(study, df) else ""
     claims = [claim("Rows that failed or ran out of time", float(len(bad)), "= 0")]
     for each in found:
         why = later if math.isnan(each.value) else ""
+        each = each._replace(elsewhere=any(word in each.sentence for word in words))
         claims.append(each._replace(why=why) if _key(each) in unmoved else each._replace(ok=False, why=COSTLY))
     return claims if error is None else [*claims, broken("the claims can be judged", error, why=later)]
 

@@ -56,7 +56,7 @@ def look(name, **more):
 
 # What is nearer to nothing, or farther from its limit, than by this factor is drawn there; letters of a sentence.
 FARTHEST, LONGEST = 1e3, 90
-VERDICTS = {"ok": BLUE, "FAIL": RED, "not judged": GREY}
+VERDICTS = {"ok": BLUE, "check": SKY, "FAIL": RED, "not judged": GREY}
 
 
 def of_claims(claims):
@@ -73,7 +73,7 @@ def of_claims(claims):
     axes.set(xscale="log", xlim=(0.7 / FARTHEST, 1.4 * FARTHEST), ylim=(-0.7, len(shown) - 0.3))
     axes.set_xlabel("value over its limit, or the limit over a value that is to be larger")
     axes.set_yticks(range(len(shown)), [_short(each.sentence) for each in shown], fontsize=7)
-    figure.legend(loc="outside lower right", ncols=3)
+    figure.legend(loc="outside lower right", ncols=4)
     return figure
 
 

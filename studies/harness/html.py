@@ -10,7 +10,7 @@ from studies.harness import sound
 from studies.harness.outcomes import held_to
 from studies.harness.pictures import embedded
 
-CLASSES = {"ok": "ok", "FAIL": "fail", "not judged": "open"}
+CLASSES = {"ok": "ok", "check": "check", "FAIL": "fail", "not judged": "open"}
 STYLE = """
 :root { color-scheme: light; }
 body { font: 16px/1.5 system-ui, sans-serif; color: #1b1b1b; margin: 0 auto; max-width: 72rem; padding: 1rem; }
@@ -26,8 +26,8 @@ img { max-width: 100%; min-width: 36rem; height: auto; } p:has(> img) { overflow
 details { border: 1px solid #ccc; border-radius: .4rem; margin: .5rem 0; padding: 0 .8rem; }
 summary { cursor: pointer; padding: .6rem 0; overflow-wrap: anywhere; }
 summary b { margin-right: .4rem; } summary small { display: block; color: #555; }
-.ok, .fail, .open { font-weight: 600; white-space: nowrap; }
-.ok { color: #116329; } .fail { color: #a40e26; } .open { color: #7a5200; }
+.ok, .check, .fail, .open { font-weight: 600; white-space: nowrap; }
+.ok { color: #116329; } .check { color: #57606a; } .fail { color: #a40e26; } .open { color: #7a5200; }
 .first li { margin: .5rem 0; } li small { display: block; color: #555; }
 .note { background: #fff6df; border-left: .3rem solid #e0a800; padding: .5rem .8rem; }
 """
@@ -47,7 +47,7 @@ def page(found, first, figures, out):
         " judged. Dirty: made by code of no commit. Noisy: while others used more than"
         f" {sound.NOISY:.0%} of the processors, or nobody knows.</p>",
         _contents(found),
-        '<h2 id="first">Ten claims first</h2>',
+        '<h2 id="first">Ten results first</h2>',
         f'<ol class="first">{"".join(_first(*each) for each in first)}</ol>',
         '<h2 id="figures">Figures of the papers</h2>',
         _mapped(figures, found),
@@ -61,7 +61,7 @@ def page(found, first, figures, out):
 
 
 def _contents(found):
-    parts = '<li><a href="#first">Ten claims first</a></li><li><a href="#figures">Figures of the papers</a></li>'
+    parts = '<li><a href="#first">Ten results first</a></li><li><a href="#figures">Figures of the papers</a></li>'
     names = ", ".join(f'<a href="#{each.name}">{each.name}</a>' for each in found)
     return f'<nav><h2>Contents</h2><ul>{parts}<li><a href="#all">All studies</a>: {names}</li></ul></nav>'
 
@@ -122,5 +122,5 @@ def converted(text, folder):
             token.attrs["src"] = embedded(file) if file.exists() else ""
     html = reader.renderer.render(tokens, reader.options, {})
     return re.sub(
-        r"<td>(ok|FAIL|not judged)</td>", lambda found: f'<td class="{CLASSES[found[1]]}">{found[1]}</td>', html
+        r"<td>(ok|check|FAIL|not judged)</td>", lambda found: f'<td class="{CLASSES[found[1]]}">{found[1]}</td>', html
     )

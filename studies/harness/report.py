@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 from demheat.runtime.paths import replaced
 from studies.harness import explained, runner, sound
-from studies.harness.claims import NEAR, Claim
+from studies.harness.claims import CHECK, NEAR, Claim
 from studies.harness.outcomes import held_to
 from studies.harness.table import render
 
-VERDICTS = ("ok", "FAIL", "not judged")
+VERDICTS = ("ok", "FAIL", "not judged", CHECK)
 
 
 class Chapter(NamedTuple):
@@ -32,7 +32,8 @@ class Chapter(NamedTuple):
     def verdicts(self):
         """Numbers of claims by verdict, in words."""
         found = Counter(each.verdict for each in self.claims)
-        return ", ".join(f"{found[word]} {word}" for word in VERDICTS if found[word])
+        parts = [f"{found[word]} {word}" for word in VERDICTS if found[word]]
+        return ", ".join(parts) + ("s" if found[CHECK] > 1 else "")
 
 
 def chapters(names, out):
@@ -95,9 +96,9 @@ def readme(found, first, figures):
             f"{len(found)} studies, {sound.total(found)}. Costs of these count in no claim.",
             "The same as one page, with all tables and figures: [index.html](index.html).\n",
             "Written by `python -m studies report`; how to read and repeat it: [studies](../docs/studies.md).\n",
-            "Ten claims first; then [figures of the papers](#figures-of-the-papers), [all studies](#all-studies) and "
+            "Ten results first; then [figures of the papers](#figures-of-the-papers), [all studies](#all-studies) and "
             "[claims that fail](#claims-that-fail).\n",
-            "## Ten claims first\n",
+            "## Ten results first\n",
             "|  | claim | value | limit | study |\n|---|---|--:|---|---|",
             *claims,
             "\n## Figures of the papers\n",
@@ -109,8 +110,8 @@ def readme(found, first, figures):
             "| study | what | claims | rows | whose costs do not count |\n|---|---|---|--:|---|",
             *lines,
             "\n## Claims that fail\n",
-            f"{sum(len(each.fails) for each in found)} of {sum(len(each.claims) for each in found)}, each with its"
-            " reason where one is known.\n",
+            f"{sum(len(each.fails) for each in found)} of {sum(len(each.claims) for each in found) - _checks(found)},"
+            " each with its reason where one is known.\n",
             "| study | claim | value | limit | why |\n|---|---|--:|---|---|",
             *_failed(found),
             f"\n{_near(found)}",
@@ -130,14 +131,16 @@ def _of_figure(found, paper, what, name, words):
 
 
 def _near(found):
-    holding = [each for chapter in found for each in chapter.claims if each.ok]
-    near = sum(1 < each.room <= NEAR for each in holding)
     return (
-        f"Of {len(holding)} that hold {near} have a limit within {NEAR:g} times the value: they check that later "
-        "code does as well, and most of these limits were set, or came down to that, after the value was seen "
-        "([claims](../docs/decisions/claims.md)). Claims about a method are those whose limit is from elsewhere: what "
-        "a paper prints, a rate, another method."
+        f"{_checks(found)} more are no claims but checks that later code does as well: their limit is within {NEAR:g} "
+        "times the value, and most were set, or came down to that, after the value was seen "
+        "([claims](../docs/decisions/claims.md)). So near a limit is a claim's where it is from elsewhere: what a "
+        "paper prints, a rate, statistics, another program, a guess that was written down before."
     )
+
+
+def _checks(found):
+    return sum(each.verdict == CHECK for chapter in found for each in chapter.claims)
 
 
 def _failed(found):

@@ -40,6 +40,8 @@ SMOOTH, OF_LIMITS = (
 # Elements are not known of what a function tells in walls, and dear about many.
 BY_ELEMENTS = ("array", "fibre", "union", "spheres, walls", "spheres")
 LIMITS_LEAST = 0.95
+# Limits from elsewhere: asked of intervals before there were any.
+ELSEWHERE = ("share of", "same of scenes", "interval over the error")
 MODULES = {"truth": "studies.intervals.truth", "fft-em": "references.fft"} | {
     name: {"dem": "demheat.dem"}.get(module, f"references.{module}") for name, module in LIMITS.items()
 }
