@@ -41,7 +41,8 @@ def frame(**changed):
 
 
 def verdicts(study, df):
-    return {each.sentence: each.verdict for each in judged(study, df)}
+    """By sentence; a check holds, too."""
+    return {each.sentence: each.verdict.replace(claims.CHECK, "ok") for each in judged(study, df)}
 
 
 def test_good_rows_are_judged(study):
@@ -102,7 +103,7 @@ def test_claims_before_one_that_cannot_be_judged_stand(study, capsys):
 
     study.claims = broken
     found = judged(study, frame())
-    assert [each.verdict for each in found] == ["ok", "ok", "FAIL"] and "KeyError" in found[-1].sentence
+    assert [each.verdict for each in found] == ["ok", "check", "FAIL"] and "KeyError" in found[-1].sentence
     assert judged(study, frame().iloc[:2])[-1].verdict == "not judged" and "KeyError" in capsys.readouterr().err
 
 
@@ -113,6 +114,28 @@ def test_limits():
     assert claim("a", 0, "= 0").ok and not claim("a", float("nan"), "<= 1").ok
     with pytest.raises(ValueError, match="limit = 'about 3'"):
         claim("a", 3, "about 3")
+
+
+@pytest.mark.parametrize(
+    ("sentence", "value", "limit", "verdict"),
+    [
+        ("error", 0.5, 1.0, "check"),
+        ("error", 0.5, ">= 0.2", "check"),
+        ("error", 2.0, 1.0, "FAIL"),
+        # Far from its limit, at it, or nothing at all.
+        ("error", 0.3, 1.0, "ok"),
+        ("error", 1.0, 1.0, "ok"),
+        ("misses", 0.0, 1.0, "ok"),
+        ("misses", 0.0, "= 0", "ok"),
+        # From elsewhere, by any study's words or its own.
+        ("error (the paper prints 1)", 0.5, 1.0, "ok"),
+        ("order in the spacing", 2.0, ">= 1.5", "ok"),
+        ("as was guessed", 9.0, ">= 8", "ok"),
+    ],
+)
+def test_what_holds_nearly_is_a_check(study, sentence, value, limit, verdict):
+    study.claims, study.ELSEWHERE = lambda df: [(sentence, value, limit)], ("guessed",)
+    assert judged(study, frame())[-1].verdict == verdict
 
 
 def test_half_of_the_rows_make_a_page(tiny):
