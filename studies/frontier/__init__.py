@@ -145,8 +145,7 @@ def notes(df):
         return
     for target in (1.0, 0.1, 0.01):
         yield means.in_words(df, "conductivity", target)
-    if told := second.in_words(df):
-        yield told
+    yield from filter(None, (second.in_words(df), second.more_in_words(df)))
 
 
 def verdict(df):
@@ -175,6 +174,13 @@ def on_a_second_machine(df):
     from studies.frontier import second
 
     return second.in_words(df)
+
+
+def with_more_ways(df):
+    """Whether the same methods win where no way is the FFT's alone."""
+    from studies.frontier import second
+
+    return second.more_in_words(df)
 
 
 def advised(df):

@@ -46,12 +46,18 @@ WAYS = {
     "dem": Way("DEM", "dem", "dem", {}, "particles", 250, 2000, own=True),
     # What is extrapolated from the same particles is mostly the same: by itself, and on few scenes.
     "dem-limit": Way("DEM", "dem", "dem", {}, "particles", 4000, 8000, extrapolates=True),
+    # As little as a conductivity asks for, as the FFT's by its own way; on a second machine alone (`frontier.second`).
+    "dem-loose": Way("DEM, tolerance 1e-3", "dem", "dem", {"tolerance": 1e-3}, "particles", 250, 2000),
     # As printed by Haddad et al.: particles in packings, calibrated surfaces.
     "dem-paper": Way(
         "DEM, paper", "dem-calibrated", "dem", {"law": "calibrated", "conforming": False}, "particles", 500, 2000
     ),
     "fem": Way("FEM, degree 2", "fem", "fem", {"order": 2}, "size", 0.35, 0.2, extrapolates=True, own=True),
     "fem-p1": Way("FEM, degree 1", "fem-p1", "fem", {"order": 1}, "size", 0.2, 0.15),
+    # As "dem-loose".
+    "fem-loose": Way(
+        "FEM, tolerance 1e-3", "fem", "fem", {"order": 2, "tolerance": 1e-3}, "size", 0.35, 0.2, extrapolates=True
+    ),
     "fft": Way("FFT", "fft", "fft", {}, "voxels", 8, 24, extrapolates=True, own=True),
     # As little as the conductivity asks for (`fft.solve`): its error is then a hundredth of the voxels'.
     "fft-loose": Way("FFT, tolerance 1e-3", "fft", "fft", {"tolerance": 1e-3}, "voxels", 8, 24, extrapolates=True),
