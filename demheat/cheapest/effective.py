@@ -23,6 +23,9 @@ from demheat.scene.inputs import chosen, finite, one_line
 
 # Of the memory that is free.
 SHARE = 0.8
+# A way that was begun is left where another should cost less than one in so many parts: what the laws tell is about
+# twice off, and what it begins with is paid once more.
+LEAVE = 2.0
 
 
 @dataclass(frozen=True)
@@ -115,7 +118,8 @@ def effective(
     """The effective conductivity tensor of a body to an accuracy, as cheaply as is known here.
 
     Laws of error and cost (study `frontier`) say which method to begin with and how fine; the interval of each
-    answer (`Field.error`, study `estimates`) says whether to refine it. Mirror planes cut the body, alike axes share a
+    answer (`Field.error`, study `estimates`) says whether to refine it, or to begin with another method that should then
+    cost less than half. Mirror planes cut the body, alike axes share a
     load, loads on one body share its set-up.
 
     Parameters
@@ -175,7 +179,7 @@ def _found(loads, accuracy, allowed, memory):
     left = [way for way in ways(loads, accuracy, memory) if way.method in allowed]
     passed, best, begun, missing = [], (math.inf, None, None), None, math.inf
     while left:
-        way = min(left, key=lambda each: each.rank)
+        way = _next(left, begun)
         left.remove(way)
         if begun in left:
             passed.append(_left(begun, missing, way))
@@ -211,6 +215,13 @@ def _found(loads, accuracy, allowed, memory):
     if found is not None:
         passed.append(f"nearest is {way.method}, within {missing * accuracy:.2g}")
     raise RuntimeError(f"effective: no method gets to accuracy = {accuracy:g} here. " + "; ".join(passed))
+
+
+def _next(left, begun):
+    """The way that should cost least, or the one that was begun, unless that should cost much more."""
+    best = min(left, key=lambda each: each.rank)
+    stays = begun in left and begun.rank[:3] == best.rank[:3] and begun.cpu_s < LEAVE * best.cpu_s
+    return begun if stays else best
 
 
 def _left(begun, missing, other):

@@ -52,6 +52,7 @@ COSTS = (
     "temperature",
     "ended",
     "tried",
+    "pace",
 )
 # Of `effective` nothing but the conductivity to one per cent.
 COSTS += tuple(

@@ -87,8 +87,7 @@ def searches(rows):
 def whole(wanted, other):
     """Scenes of which every one of the wanted searches was made there."""
     there = searches(other)
-    scenes = dict.fromkeys(scene for scene, _, _ in sorted(wanted))
-    return [scene for scene in scenes if {each for each in wanted if each[0] == scene} <= there]
+    return {scene for scene, _, _ in wanted} - {scene for scene, _, _ in wanted - there}
 
 
 def reached(df, other):
@@ -159,8 +158,8 @@ def in_words(df):
     out = [scene for scene in means.scenes_of(df) if scene not in scenes]
     return (
         f"The searches on {len(scenes)} scenes were made once more on a second machine, with the same seconds, by "
-        f"commit {other['commit'].iat[0]} (of {', '.join(out)} rows are missing or disturbed there). There the same "
-        f"accuracy costs {slower} times as much, in the median. {_kept(pairs)} {_moved(pairs, ways)}"
+        f"commits {' and '.join(sorted(set(other['commit'])))} (of {', '.join(out)} rows are missing or disturbed). "
+        f"There the same accuracy costs {slower} times as much, in the median. {_kept(pairs)} {_moved(pairs, ways)}"
     )
 
 

@@ -135,6 +135,16 @@ def test_a_way_that_turns_out_dear_gives_way(monkeypatch):
     assert told.startswith("fft: half of its interval") and ", fem 0.05" in told
 
 
+@pytest.mark.parametrize(
+    ("other", "more", "stays"), [(0.6, {}, True), (0.4, {}, False), (0.6, {"doubt": "large"}, False), (2.0, {}, True)]
+)
+def test_a_way_that_was_begun_is_left_for_half_of_its_cost(other, more, stays):
+    """Laws are about twice off; not for what is in doubt."""
+    begun, one = ways.Way("fft", {}, cpu_s=1.0, **more), ways.Way("fem", {}, cpu_s=other)
+    assert CHOSEN._next([one, begun], begun) is (begun if stays else one)
+    assert CHOSEN._next([one, begun], None) is min(begun, one, key=lambda each: each.rank)
+
+
 def test_what_nobody_reaches_is_refused_with_reasons():
     core = Sphere((0.3, 0.3, 0.3), 0.1, Material(1.0))  # multipoles know no spheres in spheres
     with pytest.raises(

@@ -141,12 +141,25 @@ def test_who_wins_on_a_second_machine():
     assert second.factors(ways) == pytest.approx({"dem": 3.5, "fem": 2.25, "fft": 2 / 1.3})
     assert [second.alone(pairs, number, "fft", 0.1) for number in (0, 1)] == [0, 1]
     # A scene of which a way is missing there is left out.
-    assert second.whole(ROWS, SLOWER.iloc[1:]) == ["half", "unions", "gyroid"]
+    assert second.whole(second.searches(ROWS), SLOWER.iloc[1:]) == {"half", "unions", "gyroid"}
+
+
+def test_ways_that_were_one_methods_alone(monkeypatch):
+    """What the record does not have on a scene counts in the second column alone, and must be there for all."""
+    more = [{"scene": scene, "way": "dem-loose", "seconds": 22.0} for scene in ("third", "half")]
+    monkeypatch.setattr(second, "second_cases", lambda: more)
+    loose = pd.DataFrame([*SLOWER.to_dict("records"), row("half", "dem-loose", 1.9)])
+    pairs = second.compared(second.fairer(ROWS, loose))
+    assert {scene for scene, _ in pairs} == {"half", "unions", "gyroid"}
+    # The FFT alone before, in two seconds; a tie with them.
+    assert [second.families(each) for each in pairs["half", 0.1]] == [{"fft"}, {"dem", "fft"}]
+    assert second.others(pairs) == {}
+    assert second.families(second.compared(second.reached(ROWS, loose))["half", 0.1][1]) == {"fft"}
 
 
 def test_rows_that_others_disturbed_are_not_kept(tmp_path, monkeypatch):
     monkeypatch.setattr(second, "FILE", tmp_path / "second.csv")
     rows = [row("third", "dem", 0.1) | {"noise": noise, "commit": "abc"} for noise in (0.01, 0.5)]
-    pd.DataFrame([*rows, row("third", "fem", None) | {"noise": 0.0, "trail": ""}]).to_csv(tmp_path / "all.csv")
-    assert second.keep(tmp_path / "all.csv") == 1
+    pd.DataFrame([*rows, row("third", "fem", None) | {"noise": 0.0, "trail": ""}]).to_csv(tmp_path / "frontier.csv")
+    assert second.keep(tmp_path) == 1
     assert list(second.there()["noise"]) == [0.01]
