@@ -118,9 +118,8 @@ def effective(
     """The effective conductivity tensor of a body to an accuracy, as cheaply as is known here.
 
     Laws of error and cost (study `frontier`) say which method to begin with and how fine; the interval of each
-    answer (`Field.error`, study `estimates`) says whether to refine it, or to begin with another method that should then
-    cost less than half. Mirror planes cut the body, alike axes share a
-    load, loads on one body share its set-up.
+    answer (`Field.error`, study `estimates`) says whether to refine it, or to begin with another method, if that should
+    cost less than half. Mirror planes cut the body, alike axes share a load, loads on one body share its set-up.
 
     Parameters
     ----------

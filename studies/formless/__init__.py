@@ -55,7 +55,7 @@ WALKS = (
 )
 # Voxels of certain bounds of checkerboards.
 CERTAIN = 128
-# Limits from elsewhere: two of a witness"s own intervals.
+# Limits from elsewhere: twice a witness's own interval.
 ELSEWHERE = ("halves of their intervals",)
 MODULES = {"walkers": "references.walkers", "bracket-voxels": "references.bracket.voxels"}
 # On another processor they go other ways: two means are 1.4 of half an interval of 2 % apart, twice in a hundred times
