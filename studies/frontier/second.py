@@ -14,13 +14,10 @@ disturbed there, or is missing, is left out whole.
 from __future__ import annotations
 
 import csv
-import os
 import statistics
 import sys
-from functools import partial
 from pathlib import Path
 
-from demheat.runtime import fresh
 from demheat.runtime.paths import replaced
 from studies.common.searches import means
 from studies.common.searches.search import TARGETS
@@ -31,33 +28,17 @@ FILE = Path(__file__).with_name("second.csv")
 KEPT = ("scene", "way", "seconds", "conductivity", "extrapolated", "trail")
 KEPT += ("noise", "triad_gbs", "commit", "when", "machine", "host")
 NAMES = {"dem": "the DEM", "fem": "finite elements", "fft": "the FFT"}
-MODULE = "studies.frontier.second"
 # Accuracies at which it is told who wins, %.
 TOLD = (1.0, 0.1, 0.01)
 
 
 def make(out):
     """Search by the further ways on this machine; rows that are there already stay."""
-    from studies.harness import quiet, runner
-
-    runner.load("frontier").CASES = list(second_cases())
-    compute = quiet.quietly(partial(runner.spawn_row, start=_started), say=print)
-    return runner.run_study("frontier", out, say=print, compute=compute)
-
-
-def _started(words, log, *, limit, environment=None):
-    """Start this module for a row."""
-    words = [sys.executable, "-m", MODULE, *words]
-    return fresh.run([*words, "--parent", str(os.getpid())], log, limit=limit, environment=environment)
-
-
-def row(*words):
-    """One row, as `studies row` makes one of the record's own."""
-    from studies.__main__ import main
     from studies.harness import runner
 
-    runner.load("frontier").CASES = list(second_cases())
-    return main(["row", *words])
+    study = runner.load("frontier")
+    study.CASES = study.FURTHER
+    return runner.run_study("frontier", out)
 
 
 def keep(out):
@@ -239,7 +220,4 @@ def claims(df):
 
 
 if __name__ == "__main__":
-    done = {"make": make, "keep": keep, "row": row}[sys.argv[1]](*sys.argv[2:])
-    if sys.argv[1] == "row":
-        sys.exit(done)
-    print(done)
+    print({"make": make, "keep": keep}[sys.argv[1]](sys.argv[2]))

@@ -78,8 +78,8 @@ def load(name):
 
 
 def find_case(study, case):
-    """Case of a study by its key, or by its number in CASES."""
-    cases = {case_key(each): each for each in study.CASES}
+    """Case of a study by its key, or by its number in CASES; FURTHER are those that its record does not hold."""
+    cases = {case_key(each): each for each in (*study.CASES, *getattr(study, "FURTHER", ()))}
     guest = guest_case(study, case)
     if guest is not None:
         return guest

@@ -202,10 +202,12 @@ def test_scenes_are_enough_and_none_is_named_twice():
     cases = list(all_cases())
     assert {case["scene"] for case in cases} == {*SCENES, *FOR_LAWS, *IN_TIME}
     assert not set(SCENES) & set(FOR_LAWS)
-    # Most searches end before their seconds do. The aim is an hour, missed by a quarter of one: to start a process,
-    # to find what is true and to draw scenes are part of these seconds.
+    # Most searches end before their seconds do. The aim is an hour, missed by a quarter of one and the two minutes that
+    # paces take: to start a process, to find what is true and to draw scenes are part of these seconds.
     stored = Path(__file__).parents[3] / "results" / "frontier.csv"
-    assert pd.read_csv(stored, usecols=["made_s"])["made_s"].sum() < min(4500, 60 * foreseen())
+    rows = pd.read_csv(stored, usecols=["made_s", "pace"])
+    # Of a slower machine, seconds of that of the searches.
+    assert (rows["made_s"] / rows["pace"].fillna(1.0)).sum() < min(4620, 60 * foreseen())
 
 
 TUNED_NAMES = set(TUNED)
