@@ -17,6 +17,7 @@ from demheat.scene import Scene
 from demheat.scene.edges import SMOOTH, edge_order
 from demheat.scene.inputs import one_line
 from references import bracket, exact, fem, fft, multipole
+from references.fem.cusps import cusp
 
 # Modules, by the names that their methods have in `METHODS`; in the order of preference where nothing is known.
 HOMES = {
@@ -173,7 +174,11 @@ def _refined(name, loads, accuracy, memory):
         Way(name, {**_fixed(name, accuracy), knob: first}, cost.error, _all(cost, loads, limit), cost.bytes), memory
     )
     least = predicted(law, part, first).bytes
-    return way._replace(refused=f"needs {_gib(least)} to begin with") if least > memory else way
+    if least > memory:
+        return way._replace(refused=f"needs {_gib(least)} to begin with")
+    if name == "fem":
+        return way._replace(refused=next(filter(None, map(cusp, loads.parts.values())), ""))
+    return way
 
 
 def _fixed(name, accuracy):

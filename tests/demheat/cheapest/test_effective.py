@@ -145,6 +145,13 @@ def test_a_way_that_was_begun_is_left_for_half_of_its_cost(other, more, stays):
     assert CHOSEN._next([one, begun], None) is min(begun, one, key=lambda each: each.rank)
 
 
+def test_spheres_that_elements_refuse_are_told():
+    """A ball that touches a wall leaves a cusp; no way that is refused at once is recommended."""
+    ball = Sphere((0.5, 0.5, 0.2), 0.2, Material(10.0))
+    lines = recommend(Scene((1, 1, 1), Material(1.0), [ball], walls={"z-": 0.0, "z+": 1.0}), 1e-2).why.splitlines()
+    assert any(line.startswith("fem: no, sphere at") and "cusp" in line for line in lines)
+
+
 def test_what_nobody_reaches_is_refused_with_reasons():
     core = Sphere((0.3, 0.3, 0.3), 0.1, Material(1.0))  # multipoles know no spheres in spheres
     with pytest.raises(

@@ -10,7 +10,7 @@ from demheat.packing.base import make_packing
 from demheat.packing.cache import relaxed
 from demheat.sampling import reconstruct as module
 from demheat.sampling.edges import Edges
-from references import exact
+from references import exact, multipole
 
 ONE, FIVE = Material(1.0), Material(5.0)
 BALL = Sphere((0.5,) * 3, 1 / 3, FIVE)
@@ -160,6 +160,19 @@ def test_a_layer_one_cell_thick_keeps_the_slope_of_its_cells():
     points = inside() * [6, 6, 1]
     # Solver tolerance.
     assert_allclose(field.temperature_at(points), points[:, 2], atol=1e-9)
+
+
+@pytest.mark.filterwarnings("ignore:.*do not fit into gaps")
+def test_a_fit_bends_no_slope_beside_a_point_of_contact():
+    """Few edges of a ball that touches a wall made its flux 5 times the largest that there is."""
+    scene = Scene((1, 1, 1), ONE, [Sphere((0.5, 0.5, 0.2), 0.2, Material(10.0))], walls={"z-": 0.0, "z+": 1.0})
+    offset = np.random.default_rng(0).normal(size=(500, 3))
+    offset *= 0.199 * np.random.default_rng(1).random((500, 1)) ** (1 / 3) / np.linalg.norm(offset, axis=1)[:, None]
+    points = offset + (0.5, 0.5, 0.2)
+    flux = demheat.solve(scene, particles=2000, seed=0).flux_at(points)
+    true = multipole.solve(scene, accuracy=1e-4).flux_at(points)
+    # Found: .11 of the rms flux, 1.4 before.
+    assert np.sqrt(np.sum((flux - true) ** 2) / np.sum(true**2)) < 0.25
 
 
 def test_the_last_points_are_fitted_once_and_kept_apart(monkeypatch):

@@ -1,0 +1,18 @@
+"""Spheres that no mesh fits around, told before there is one."""
+
+from __future__ import annotations
+
+from demheat.scene import Scene, Sphere
+from demheat.scene.inputs import one_line
+from references.mesh.sizes import wanted_sizes
+
+
+def cusp(scene: Scene) -> str:
+    """Why spheres cannot be meshed, or nothing; other shapes are measured by the mesher alone, which takes longer."""
+    if not all(isinstance(shape, Sphere) for shape in scene.inclusions):
+        return ""
+    try:
+        wanted_sizes(scene, max(scene.size))
+    except (ValueError, NotImplementedError) as error:
+        return one_line(error)
+    return ""
