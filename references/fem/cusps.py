@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from demheat.scene import Scene, Sphere
+from demheat.scene import Scene
 from demheat.scene.inputs import one_line
 from references.mesh.sizes import wanted_sizes
 
 
 def cusp(scene: Scene) -> str:
     """Why spheres cannot be meshed, or nothing; other shapes are measured by the mesher alone, which takes longer."""
-    if not all(isinstance(shape, Sphere) for shape in scene.inclusions):
+    if not all(shape.fills_ball for shape in scene.inclusions):
         return ""
     try:
         wanted_sizes(scene, max(scene.size))
