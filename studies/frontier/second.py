@@ -89,8 +89,9 @@ def _without_more(df, other):
 
 
 def _pairs(df, one, two, scenes):
+    both = {scene: [means.searches_of(rows, scene, "conductivity") for rows in (one, two)] for scene in scenes}
     return {
-        (scene, target): [means.reached(rows, scene, "conductivity", target) for rows in (one, two)]
+        (scene, target): [means.reaching(rows, "conductivity", target) for rows in both[scene]]
         for target in TARGETS
         for scene in means.judged(df, "conductivity", target)
         if scene in scenes

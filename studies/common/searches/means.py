@@ -64,10 +64,19 @@ def longest(df):
 
 def reached(df, scene, quantity, target, *, any_shape=True, peers=False):
     """All ways that get to a target, the cheapest first; ours, or those of others."""
-    # A record is wide, and this is asked for every target.
+    return reaching(searches_of(df, scene, quantity), quantity, target, any_shape=any_shape, peers=peers)
+
+
+def searches_of(df, scene, quantity):
+    """Of each way the longest search on a scene, a dict each; a record is wide, and this is asked for every target."""
     wanted = [name for name in ("scene", "way", "seconds", *COLUMNS[quantity]) if name in df]
+    return longest(df.loc[df["scene"] == scene, wanted]).to_dict("records")
+
+
+def reaching(rows, quantity, target, *, any_shape=True, peers=False):
+    """The same of searches on one scene."""
     found = []
-    for row in longest(df.loc[df["scene"] == scene, wanted]).to_dict("records"):
+    for row in rows:
         how = WAYS[row["way"]]
         if (any_shape and how.spheres) or how.peer is not peers:
             continue
