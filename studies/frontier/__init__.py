@@ -18,7 +18,9 @@ Costs are those of a quiet machine, or none are stored: `python -m studies run f
 
 from studies.frontier.cases import QUICK_SECONDS, all_cases, second_cases
 
-CASES, FURTHER = list(all_cases()), list(second_cases())
+CASES = list(all_cases())
+# That the record does not hold (`second`).
+FURTHER = list(second_cases())
 # Limits from elsewhere: guessed or asked before there were rows.
 ELSEWHERE = ("Scenes on which", "recommend:", "effective:", "Pairs of scene")
 MODULES = {"ngsolve": "studies.peers.programs.ngsolve", "effective": "demheat.cheapest"}
