@@ -33,6 +33,8 @@ def VALUES(case):
     return True
 
 
+# Limits from elsewhere: what the paper prints.
+ELSEWHERE = ("beside the paper's 1.93 K", "(the paper: at the centre)")
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "volume of all cells off": "rounding of a sum over cells",

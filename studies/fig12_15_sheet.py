@@ -23,6 +23,8 @@ from studies.harness.cells import cell, numbers
 from studies.harness.pick import pick, present
 from studies.harness.printed import printed
 
+# Limits from elsewhere: what the paper prints.
+ELSEWHERE = ("(paper: below 4)",)
 PAPER = printed("fig12_15_sheet")
 STOP, OUTPUTS = 7.878, 60
 TIMES = tuple(STOP * (k + 1) / OUTPUTS for k in range(OUTPUTS))

@@ -17,7 +17,6 @@ from demheat.scene import Scene
 from demheat.scene.edges import SMOOTH, edge_order
 from demheat.scene.inputs import one_line
 from references import bracket, exact, fem, fft, multipole
-from references.fem.cusps import cusp
 
 # Modules, by the names that their methods have in `METHODS`; in the order of preference where nothing is known.
 HOMES = {
@@ -177,6 +176,9 @@ def _refined(name, loads, accuracy, memory):
     if least > memory:
         return way._replace(refused=f"needs {_gib(least)} to begin with")
     if name == "fem":
+        # Loads what is heavy.
+        from references.fem.cusps import cusp
+
         return way._replace(refused=next(filter(None, map(cusp, loads.parts.values())), ""))
     return way
 

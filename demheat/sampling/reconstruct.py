@@ -113,13 +113,13 @@ class Reconstruction:
 
     def _wild(self, seed, around, steeper):
         """Fits among many cells that add more to the slope than they can know."""
-        cell, exists = around
         if self.fit is not STEADY:
             return np.zeros(len(seed), bool)
-        apart = np.linalg.norm(self.slope[cell] - self.slope[seed][:, None], axis=2)
-        largest = np.where(exists, apart, 0.0).max(axis=1)
+        cell, exists = around
+        apart = self.slope[cell] - self.slope[seed][:, None]
+        largest = np.where(exists, np.einsum("ijk,ijk->ij", apart, apart), 0.0).max(axis=1)
         many = exists.sum(axis=1) > self.fit.nearest
-        return many & (np.linalg.norm(steeper, axis=1) > MOST * largest)
+        return many & (np.einsum("ij,ij->i", steeper, steeper) > MOST**2 * largest)
 
     def _at_edges(self, seed, points, from_seed, edges, reach):
         """Rows of the fits for what is known at edges, values and slopes, less those of the seed's cell."""

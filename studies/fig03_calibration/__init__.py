@@ -26,8 +26,8 @@ CURES = (
     ("across", {"wall": "center"}),
 )
 POLICIES = ({"sparse": "keep"}, {"sparse": "drop"}, {"sparse": "drop", "count": "rest"})
-# Limits from elsewhere: a bound.
-ELSEWHERE = ("affine bound",)
+# Limits from elsewhere: a bound, and what the paper prints of its packings.
+ELSEWHERE = ("affine bound", "lsa packings, as in the paper")
 TIMEOUT = 3600.0
 # Range of C_t in the periodic cell, %.
 RANGES = {"relaxed": 1.0, "lsa": 0.2}

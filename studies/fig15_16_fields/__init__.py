@@ -242,7 +242,7 @@ def _others(df):
     for size, rms in ((SIZES["fem"][0], 4.0), (SIZES["fem"][2], 0.7)):
         found = largest(pick(df, name="fem", size=size), ["flux_rms"])
         yield f"FEM, P2, edges of {1e3 * size:g} mm: flux away, rms, %", found, rms
-    for voxels, rms in ((VOXELS[0], 3.5), (VOXELS[-1], 0.5)):
+    for voxels, rms in ((VOXELS[0], 2.5), (VOXELS[-1], 0.5)):
         found = largest(pick(df, name="fft", voxels=voxels), ["flux_rms"])
         yield f"FFT, {voxels}^3 laminate voxels: flux away, rms, %", found, rms
 

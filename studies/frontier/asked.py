@@ -11,6 +11,7 @@ import math
 import statistics
 import tempfile
 import warnings
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -62,9 +63,7 @@ def _median(name, way, value):
     found, how = [], WAYS[way]
     for _ in range(TIMES):
         scene = replace(scene_of(name))
-        forget()
-        with tempfile.TemporaryDirectory() as folder, methods.packings_in(folder), warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)
+        with _anew():
             begun = cpu_seconds()
             load(how.method).solve(scene, **knobs_at(how, value, scene))
             found.append(cpu_seconds() - begun)
@@ -154,11 +153,17 @@ def _cheapest_other(scene, accuracy, found):
 
 
 def _asked(scene, accuracy, seconds, **method):
+    with _anew():
+        return effective(scene, accuracy=accuracy, memory=MEMORY, seconds=seconds, **method)
+
+
+@contextmanager
+def _anew():
+    """Nothing is kept from before; what coarse elements do not resolve, and where the time was over, is in the row."""
     forget()
     with tempfile.TemporaryDirectory() as folder, methods.packings_in(folder), warnings.catch_warnings():
-        # What coarse elements do not resolve, and where the time was over, is in the row.
         warnings.simplefilter("ignore", UserWarning)
-        return effective(scene, accuracy=accuracy, memory=MEMORY, seconds=seconds, **method)
+        yield
 
 
 def _along(name, found):

@@ -17,11 +17,11 @@ OPERATORS = {"<=": float.__le__, "<": float.__lt__, ">=": float.__ge__, ">": flo
 # largest and the least of some move by that. Twice, for ranks may stay as they were.
 DRAWS, DECADES = 2, (1.0, 3.0)
 # A claim that holds with no more room than this factor is a check that later code does as well, and called one, unless
-# its sentence says from where the limit is: print, a rate, statistics, another program or method, what was guessed. A
-# study's own words for that are in its ELSEWHERE.
+# its sentence says from where the limit is: what a paper prints of its own network, digits that are known, a rate,
+# statistics. A study's own words for that are in its ELSEWHERE, with the reason.
 NEAR, CHECK = 3.0, "check"
-ELSEWHERE = ("paper", "printed", "order in ", "order of ", ": order", "exponent", "standard errors", "known")
-ELSEWHERE += ("standard deviations", "Voro++", "LAMMPS", "spheropack", "other program", "over Laguerre")
+ELSEWHERE = ("The paper's network", "As in the paper", "below the paper's", "printed", "the known ", "order in ")
+ELSEWHERE += ("order of ", ": order", "exponent", "standard errors", "standard deviations")
 COSTLY = "rests on costs that do not count"
 UNFINISHED = "rows are missing"
 

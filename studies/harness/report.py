@@ -135,7 +135,7 @@ def _near(found):
         f"{_checks(found)} more are no claims but checks that later code does as well: their limit is within {NEAR:g} "
         "times the value, and most were set, or came down to that, after the value was seen "
         "([claims](../docs/decisions/claims.md)). So near a limit is a claim's where it is from elsewhere: what a "
-        "paper prints, a rate, statistics, another program, a guess that was written down before."
+        "paper prints, a rate, statistics, a guess or an aim that was written down before."
     )
 
 

@@ -12,6 +12,8 @@ from studies.harness.cells import numbers
 from studies.harness.pick import pick, present
 
 SEEDS = (0, 1)
+# Limits from elsewhere: standard deviations of one packing, and how many times as fast was asked for.
+ELSEWHERE = ("spheropack",)
 MODULES = {"lsa": "demheat.packing.lsa", "relax": "demheat.packing.relax", "spheropack": "studies.packings.rows"}
 LARGE = 100_000
 # Gaps, over the sum of radii, at which numbers of neighbours are compared.

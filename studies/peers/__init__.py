@@ -20,6 +20,8 @@ from studies.peers.means import AIM, COSTED, ahead, same_mesh
 
 HOME = Path(__file__).parent / "programs"
 PROGRAMS = tuple(sorted(path.stem for path in HOME.glob("*.py") if path.stem != "__init__"))
+# Limits from elsewhere: as dear as ours.
+ELSEWHERE = ("other program over ours",)
 # Beds of grains are solved by no method, but by `demheat.grains`.
 MODULES = {name: f"studies.peers.programs.{name}" for name in PROGRAMS} | {"grains": "studies.peers.beds"}
 PAPER = {}

@@ -34,7 +34,7 @@ ARRAY_LIMITS = {"dem": (0.09, 0.02, 0.009), "fem": (0.25, 0.025, 0.005), "fft": 
 NEUTRAL_LIMITS = {
     "dem": {8: (0.15, 0.013), 83: (0.15, 0.0045)},
     "fem": {8: (0.002, 3e-4), 83: (0.002, 1.5e-4)},
-    "fft": {8: (0.07, 0.1), 83: (0.08, 0.05)},
+    "fft": {8: (0.07, 0.1), 83: (0.08, 0.045)},
     "multipole": {8: (1e-12, 1e-12), 83: (1e-12, 1e-12)},
 }
 # Limits that are far from the values, and why they are no nearer.

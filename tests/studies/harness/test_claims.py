@@ -128,7 +128,10 @@ def test_limits():
         ("misses", 0.0, 1.0, "ok"),
         ("misses", 0.0, "= 0", "ok"),
         # From elsewhere, by any study's words or its own.
-        ("error (the paper prints 1)", 0.5, 1.0, "ok"),
+        ("The paper's network: error", 0.5, 1.0, "ok"),
+        # Of what is no paper's own, and of a word within another.
+        ("error with the paper's 5000 particles", 0.5, 1.0, "check"),
+        ("peak memory per unknown, bytes", 578.0, 600.0, "check"),
         ("order in the spacing", 2.0, ">= 1.5", "ok"),
         ("as was guessed", 9.0, ">= 8", "ok"),
     ],
