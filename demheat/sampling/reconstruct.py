@@ -38,7 +38,7 @@ STORED = Fit(QUADRATICS, 16, 1e-4, 2.0)
 # Steady, see docs/decisions/points.md.
 STEADY = Fit(HARMONICS, 24, 1e-5, 6.0)
 # A steady fit may add so many times what slopes of the cells around differ by: where heat converges, as to where a good
-# conductor touches a wall, few edges can bend it to any slope. Of 4000 points in each of 20 scenes none adds more, but
+# conductor touches a wall, few edges can bend it to any slope. Of 4000 points in each of 25 scenes none adds more, but
 # for two among pairs of balls by 2000 particles; beside a point of contact some add 4 to 30 times as much.
 MOST = 2.0
 # Points fitted at once: some 100 MiB of candidates.
