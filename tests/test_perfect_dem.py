@@ -6,6 +6,7 @@ import warnings
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from spared import slow_but
 
 from demheat import Box, Convection, Cylinder, Flux, Layer, Material, Radiation, Scene, Sphere, dem, solve
 from demheat.scene.perfect import INFINITE
@@ -50,7 +51,9 @@ BODIES = {
 }
 
 
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize(
+    "name", slow_but({"across faces", "half at a flux", "layer that resists", "union", "unlike"}, BODIES)
+)
 def test_the_limit_of_good_conductors(name):
     """At 1e6 times the matrix's conductivity all is off by some millionths, by its own."""
     perfect, good = (solve(BODIES[name](Material(k)), particles=1000) for k in (math.inf, MATRIX * 1e6))

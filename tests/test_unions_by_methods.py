@@ -9,6 +9,7 @@ own errors.
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from solid_shapes import MATRIX
+from spared import slow_but
 from test_solids_by_methods import FRACTION, RADIUS, WAYS, rayleigh
 
 from demheat import Material, Scene, Sphere, solve
@@ -52,7 +53,7 @@ def test_fibres_on_one_axis_are_one(way):
     assert_allclose(field.fractions[1], FRACTION, rtol=1e-3)
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", slow_but(WAYS.keys() - {"fem"}, WAYS))
 def test_boxes_that_overlap_are_one_slab(way):
     """Faces beyond the walls, exact up to what the solvers leave, across and along."""
     run, _, _ = WAYS[way]

@@ -72,6 +72,7 @@ def test_how_far_beyond_its_bounds_a_value_is():
     assert np.isnan(walked.beyond(frame(bracket), own | {"k_ratio": float("nan")}))
 
 
+@pytest.mark.slow
 def test_the_round_knot_is_as_large_as_that_of_triangles():
     ours, theirs = (made("knot", 2.0, None).inclusions[0].volume for made in (scenes.walked, scenes.made))
     # Cells that the surface cuts count by planes; a tube with facets is shorter on the inside of bends.

@@ -120,6 +120,7 @@ def test_what_is_no_refusal_is_raised():
         answer(lambda: 1 / 0)
 
 
+@pytest.mark.slow
 def test_an_infinite_conductivity_is_found_or_refused():
     row = rows.steady("contrast", 7)
     found = json.loads(row["verdicts"])

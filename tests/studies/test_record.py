@@ -22,7 +22,7 @@ with (HERE / "replayed.csv").open(newline="", encoding="utf-8") as file:
     COSTS = {(row["study"], row["case"]): float(row["cpu_s"]) for row in csv.DictReader(file)}
 CHOSEN = list(COSTS)
 # CPU-seconds from which a row is for `make test-slow`.
-MOST = 5.0
+MOST = 2.0
 EXECUTED = set((HERE / "executed.txt").read_text(encoding="utf-8").split())
 # What a case says of the code that makes its row.
 KINDS = ("name", "method", "law", "integrator", "scheme", "rule")

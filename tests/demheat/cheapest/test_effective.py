@@ -6,6 +6,7 @@ from importlib import import_module
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from spared import slow_but
 
 from demheat import Box, Ellipsoid, Layer, Material, Scene, Sphere, effective, gallery, orthotropic, recommend, solve
 from demheat.cheapest import answers, cost_laws, ways
@@ -58,7 +59,7 @@ def test_every_method_gets_there(method):
     assert found.cost["cpu_s"] > 0 and found.how and found.saved
 
 
-@pytest.mark.parametrize("method", ["fft", "dem"])
+@pytest.mark.parametrize("method", slow_but({"fft"}, ["fft", "dem"]))
 def test_the_whole_tensor_lies_in_its_intervals(method):
     right = conductivity_tensor(multipole.solve_axes(ASKEW))
     assert abs(right[0, 1]) > 5e-3 * right[0, 0]  # there is something beside the diagonal

@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 from functools import cache
+from itertools import product
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from spared import slow_but
 from transient_scenes import ALUMINIUM, BOX, INTEGRATORS, METAL, last
 
 from demheat import Flux, Material, MovingCylinder, Scene, UniformSource, evolve
@@ -89,8 +91,10 @@ TRACK = Scene(
 )
 
 
-@pytest.mark.parametrize("integrator", ["rkl2", "tr-bdf2"])
-@pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
+@pytest.mark.parametrize(
+    ("integrator", "accuracy"),
+    slow_but({("rkl2", 1e-2), ("tr-bdf2", 1e-4)}, product(["rkl2", "tr-bdf2"], [1e-2, 1e-4])),
+)
 def test_accuracy_under_a_moving_source(integrator, accuracy):
     """Cells of half the source's size and hardly any conduction, which forgives nothing."""
     right = under_source()

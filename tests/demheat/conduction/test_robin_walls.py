@@ -28,7 +28,9 @@ def series_flux(walls):
     "walls",
     [(100.0, Convection(3.0, 20.0)), (Convection(0.1, 20.0), 100.0), (Convection(50.0, -5.0), Convection(0.3, 60.0))],
 )
-@pytest.mark.parametrize("knobs", [{}, {"law": "laguerre", "interface": "arithmetic", "solver": "amg"}])
+@pytest.mark.parametrize(
+    "knobs", [{}, pytest.param({"law": "laguerre", "interface": "arithmetic", "solver": "amg"}, marks=pytest.mark.slow)]
+)
 def test_slab_with_convection_is_exact(walls, knobs):
     field = solve(Scene(BOX, ONE, walls=dict(zip(("y-", "y+"), walls, strict=True))), **FEW, **knobs)
     flux, hot, film = series_flux(walls)

@@ -35,6 +35,7 @@ def test_the_exact_value_is_inside(name):
         assert 0.02 < (known - found.lower) / (found.upper - found.lower) < 0.98
 
 
+@pytest.mark.slow
 def test_many_spheres_nested_in_a_skewed_cell():
     core, coat = Material(20.0), Material(0.2)
     spheres = [
@@ -77,6 +78,7 @@ def test_a_width_beyond_any_mesh_is_refused_by_one_mesh(monkeypatch):
         solver._check_width(least / 1.5, found)
 
 
+@pytest.mark.slow
 def test_a_width_is_reached():
     scene = gallery.sphere_in_cube(10.0)
     found = bracket.solve(scene, size=scene.size[0] / 6, width=1e-3)

@@ -3,6 +3,7 @@
 import fem_scenes  # noqa: F401, skips without gmsh
 import numpy as np
 import pytest
+from spared import slow_but
 
 from demheat import gallery
 from demheat.scene import Material, Scene, Sphere
@@ -27,7 +28,7 @@ def scenes():
 
 
 @pytest.mark.parametrize("scene", list(scenes()))
-@pytest.mark.parametrize("size", [0.3, 0.1])
+@pytest.mark.parametrize("size", slow_but({0.3}, [0.3, 0.1]))
 def test_patches_are_on_their_side(scene, size):
     mesh = make(scene, size=size * max(scene.size))
     for upper in (True, False):

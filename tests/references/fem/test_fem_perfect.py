@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from spared import slow_but
 
 from demheat import Box, Convection, Cylinder, Flux, Layer, Material, Radiation, Scene, Sphere
 from demheat.scene.perfect import INFINITE
@@ -31,6 +32,7 @@ def test_a_cubic_array(resistance, expected):
     assert_allclose(fem.solve(scene, size=1 / 26).conductivity / MATRIX, expected, rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_a_cubic_array_in_its_cell():
     """The level of the temperature is free there, and the perfect ball's with it."""
     scene = body(Sphere(MIDDLE, lattice.radius("sc", 0.4), PERFECT), **CELL)
@@ -54,7 +56,9 @@ BODIES = {
 }
 
 
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize(
+    "name", slow_but({"across faces, film", "half at a wall", "beside a pore", "in a fluid"}, BODIES)
+)
 def test_the_limit_of_good_conductors(name):
     """At 1e6 times the matrix's conductivity all is off by some millionths."""
     perfect, good = (fem.solve(BODIES[name](Material(k)), size=0.18) for k in (math.inf, MATRIX * 1e6))

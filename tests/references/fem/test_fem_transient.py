@@ -166,7 +166,7 @@ def test_a_wall_may_come_near_to_another():
 # ---------------------------------------------------------------- heat
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [KINDS[0], *(pytest.param(kind, marks=pytest.mark.slow) for kind in KINDS[1:])])
 def test_heat_is_conserved(kind):
     """To ten times the linear tolerance, whatever loads it."""
     walls = {"x-": lambda t: 3 * t, "y-": 0.0, "z+": Flux(lambda t: 2 - t), "z-": 1.0}

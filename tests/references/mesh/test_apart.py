@@ -171,6 +171,7 @@ COARSE = Scene(
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is filled by the C library of Linux")
+@pytest.mark.slow
 def test_a_mesh_is_the_same_whatever_was_meshed_before():
     first = mesh.make_round(COARSE, size=1.2e-4, order=2)
     mesh.make(ball(), size=0.3, order=1)

@@ -13,7 +13,10 @@ from references.mesh import make_round
 from references.mesh import round as module
 
 
-@pytest.mark.parametrize(("domain", "walls"), [("sphere", ["round"]), ("cylinder-y", ["y-", "y+", "round"])])
+@pytest.mark.parametrize(
+    ("domain", "walls"),
+    [("sphere", ["round"]), pytest.param("cylinder-y", ["y-", "y+", "round"], marks=pytest.mark.slow)],
+)
 def test_round_bodies(domain, walls):
     of = Scene((1.0, 0.7, 1.0) if domain != "sphere" else (1.0,) * 3, UNIT, initial=0.0, domain=domain)
     lids = {"y-": math.pi / 4, "y+": math.pi / 4, "round": 0.7 * math.pi if domain != "sphere" else math.pi}

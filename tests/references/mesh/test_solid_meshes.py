@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from solid_shapes import MATRIX, OTHER, TURN
+from spared import slow_but
 
 from demheat import Layer, Scene, Sphere
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Torus
@@ -29,7 +30,7 @@ def cell(*shapes, size=(1.0, 1.0, 1.0), **load):
     return Scene(size, MATRIX, shapes, **(load or {"gradient": (1.0, 0.0, 0.0)}))
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", slow_but({"brick", "rod"}, SHAPES))
 def test_cells_repeat_and_phases_have_their_volumes(name):
     scene = cell(SHAPES[name])
     mesh = make(scene, size=0.25)

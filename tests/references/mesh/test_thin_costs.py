@@ -28,8 +28,8 @@ def coated(radius, thickness):
     ("scene", "size"),
     [
         (layers((0.3, 0.35), (0.37, 0.4)), 0.12),
-        (coated(0.3, 0.01), 0.16),
-        (coated(0.3, 0.02), 0.16),
+        pytest.param(coated(0.3, 0.01), 0.16, marks=pytest.mark.slow),
+        pytest.param(coated(0.3, 0.02), 0.16, marks=pytest.mark.slow),
     ],
 )
 def test_estimate_is_within_a_factor_of_two(scene, size):

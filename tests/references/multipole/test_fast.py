@@ -84,7 +84,10 @@ def test_mirror_parities():
         assert_allclose(image, real * row.real + 1j * imaginary * row.imag, rtol=0, atol=1e-14)
 
 
-@pytest.mark.parametrize(("sizes", "shape"), [((0.07, 0.07), SHAPE), ((0.02, 0.09), SHAPE), ((0.07, 0.07), (3, 3, 3))])
+@pytest.mark.parametrize(
+    ("sizes", "shape"),
+    [((0.07, 0.07), SHAPE), ((0.02, 0.09), SHAPE), pytest.param((0.07, 0.07), (3, 3, 3), marks=pytest.mark.slow)],
+)
 def test_what_cells_make_is_what_all_pairs_make(sizes, shape):
     spheres, order = random_spheres(sizes=sizes), 4
     n, m = entries(order)

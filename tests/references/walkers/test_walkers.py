@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from spared import slow_but
 
 from demheat import gallery
 from demheat.scene import Ellipsoid, Flux, Image, Layer, LevelSet, Material, Scene, Sphere
@@ -45,7 +46,7 @@ def known(name):
     return (multipole if name.startswith("unlike") else exact).solve(scene).conductivity
 
 
-@pytest.mark.parametrize("name", KNOWN)
+@pytest.mark.parametrize("name", slow_but({"layers across", "pore", "body-centred"}, KNOWN))
 def test_what_is_known(name):
     scene, walks, radius, _ = KNOWN[name]
     found = walkers.solve(scene, walks=walks, radius=radius, seed=1)
@@ -70,6 +71,7 @@ def test_other_units():
     assert (other.conductivity, other.error) == (4 * one.conductivity, 4 * one.error)
 
 
+@pytest.mark.slow
 def test_the_interval_shrinks_as_theory_says():
     few, many = (walkers.solve(ball(0.2), walks=walks, radius=0.1, seed=2) for walks in (100, 900))
     # The square root of nine; either may have the longest lag for the shortest, which scatters 1.7 times as much.
@@ -133,6 +135,7 @@ def test_what_walkers_do_not_know():
             walkers.solve(scene)
 
 
+@pytest.mark.slow
 def test_walkers_that_leave_a_surface_do_not_end_in_a_pore():
     """A level set's slope is that of a grid, so that a step straight off it may end on the other side."""
     half = LevelSet(

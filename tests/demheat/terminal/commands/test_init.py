@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from spared import slow_but
 
 from demheat.declared import all_methods
 from demheat.io import scenes
@@ -15,7 +16,12 @@ def test_every_command_has_an_example():
 
 
 # Answers to be judged are of another program.
-@pytest.mark.parametrize("name", [name for name in helps.EXAMPLES if name != "judge"])
+@pytest.mark.parametrize(
+    "name",
+    slow_but(
+        helps.EXAMPLES.keys() - {"judge", "report", "compare"}, [name for name in helps.EXAMPLES if name != "judge"]
+    ),
+)
 def test_an_example_works_in_an_empty_folder(name, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for line in helps.EXAMPLES[name].split(" && "):
