@@ -74,8 +74,12 @@ KNOWN = {(0.0, 1e3): 15.86927, (1e-3, 1e4): 11.21950, (1e-5, math.inf): 18.50288
 
 @pytest.mark.parametrize(
     ("gap", "contrast", "load"),
-    [(*known, load) for known, load in zip(KNOWN, (WALLS, WALLS, CELL), strict=True)],
-    ids=["touching, walls", "walls", "cell"],
+    [
+        pytest.param(*known, load, id=name, marks=marks)
+        for known, load, name, marks in zip(
+            KNOWN, (WALLS, WALLS, CELL), ("touching, walls", "walls", "cell"), ((), pytest.mark.slow, ()), strict=True
+        )
+    ],
 )
 def test_spheres_in_order_that_touch_or_nearly(gap, contrast, load):
     """85.7 and some 1e8 were told of the first and the last."""
@@ -148,6 +152,7 @@ def test_what_a_gap_lets_pass():
     assert_allclose(told, 0.03, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_unlike_spheres_beside_multipoles():
     """Two that nearly touch in a cell, oblique, one of them across its faces."""
     one, two = np.array([0.1, 0.3, 0.4]), np.array([0.45, 0.6, 0.55])

@@ -57,6 +57,7 @@ def test_many_spheres_nested_in_a_skewed_cell():
     assert found.width < 0.02
 
 
+@pytest.mark.slow
 def test_bounds_close_in():
     scene = gallery.sphere_in_cube(10.0)
     widths = [bracket.solve(scene, size=scene.size[0] / n).width for n in (8, 16)]

@@ -121,6 +121,7 @@ def test_from_zero_to_infinity(scene, expected):
     assert_allclose(fem.solve(scene, size=0.2).conductivity, expected, rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_all_axes():
     fields = fem.solve_axes(body(Sphere((0.1, 0.9, 0.5), 0.3, PERFECT), **CELL), size=0.15)
     assert_allclose([f.conductivity for f in fields], fields[0].conductivity, rtol=1e-3)

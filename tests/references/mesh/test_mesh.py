@@ -134,6 +134,7 @@ def test_wanted_sizes_of_small_spheres_shells_layers_and_gaps():
     assert_allclose(top[:, 4], 0.5 * np.sqrt([0.05 * 0.15, 0.051 * 0.149]))
 
 
+@pytest.mark.slow
 def test_a_mesh_does_not_depend_on_the_unit_of_length_and_is_reproducible():
     unit = 2.0**-20  # a power of two: the same digits
     first = mesh.make(scene(ball()), size=0.15)

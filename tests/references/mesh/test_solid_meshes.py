@@ -50,6 +50,7 @@ def test_half_spaces_end_at_walls():
     assert_allclose(np.bincount(mesh.phase, mesh.volumes)[1], (1.7**3 - 0.7**3) / 36, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_edges_are_short_in_gaps_between_fibres():
     def fibres(gap):
         radius = 0.25 - gap / 4
