@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from functools import cached_property
 
+from demheat.cheapest.measures import Measures, measures
 from demheat.scene import Scene
 from demheat.scene.symmetry import alike_axes, mirrors, reduced
 from demheat.tensor import axis_loads
 
 
-class Loads(NamedTuple):
+@dataclass(frozen=True)
+class Loads:
     """Loads that show a body's tensor."""
 
     # wholes, parts: mapping of int to Scene: The body under a load along each axis that counts, and what its mirror
@@ -26,6 +28,21 @@ class Loads(NamedTuple):
     def body(self) -> Scene:
         """The body under one of the loads."""
         return next(iter(self.wholes.values()))
+
+    @property
+    def largest(self) -> Scene:
+        """The largest of the parts."""
+        return max(self.parts.values(), key=lambda each: each.volume)
+
+    @cached_property
+    def of_body(self) -> Measures:
+        """Measures of the body, which no load changes."""
+        return measures(self.body)
+
+    @cached_property
+    def of_largest(self) -> Measures:
+        """Measures of the largest part."""
+        return self.of_body if self.parts is self.wholes else measures(self.largest)
 
     @property
     def together(self) -> bool:

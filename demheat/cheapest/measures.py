@@ -131,13 +131,13 @@ def _gap(scene):
         # A sphere's own nearest image.
         nearest = float(np.min((size.min() - 2 * radii) / radii))
     tree = cKDTree(centers % size if scene.periodic else centers, boxsize=size if scene.periodic else None)
-    for i, j in tree.query_pairs(min(2.5 * radii.max(), 0.49 * size.min())):
-        apart = np.abs(centers[i] - centers[j])
-        if scene.periodic:
-            apart = np.minimum(apart % size, -apart % size)
-        gap = math.dist(apart, (0, 0, 0)) - radii[i] - radii[j]
-        if gap <= 0 and {outer[i].kind, outer[j].kind} != {"sphere"}:
-            # Enclosing balls of other bodies overlap where these may be apart.
-            continue
-        nearest = min(nearest, gap / min(radii[i], radii[j]))
+    i, j = tree.query_pairs(min(2.5 * radii.max(), 0.49 * size.min()), output_type="ndarray").T
+    apart = np.abs(centers[i] - centers[j])
+    if scene.periodic:
+        apart = np.minimum(apart % size, -apart % size)
+    gaps = np.linalg.norm(apart, axis=1) - radii[i] - radii[j]
+    round_ = np.array([shape.kind == "sphere" for shape in outer])
+    # Enclosing balls of other bodies overlap where these may be apart.
+    told = (gaps > 0) | (round_[i] & round_[j])
+    nearest = np.min((gaps / np.minimum(radii[i], radii[j]))[told], initial=nearest)
     return float(np.clip(nearest, 1e-6, WIDEST))

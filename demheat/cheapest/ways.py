@@ -138,7 +138,7 @@ def _exact(loads, accuracy):
 
 def _multipole(loads, accuracy, memory):
     try:
-        found = [law_and_measures("multipole", whole) for whole in loads.wholes.values()]
+        found = [_law_of("multipole", whole, loads.of_body) for whole in loads.wholes.values()]
     except NotImplementedError as error:
         return Way("multipole", {}, refused=one_line(error))
     knobs = {"accuracy": accuracy}
@@ -211,7 +211,7 @@ def _on_voxels(loads, parts, fixed):
     """The FFT on the voxels of an image, each split into some parts along each axis."""
     k, shape = loads.body.mean_conductivities, [n * parts for n in loads.body.image.shape]
     contrast = math.log(k.max() / max(k.min(), k.max() / PORE)) if k.max() else 0.0
-    m, whole = measures(loads.body)._replace(contrast=contrast), math.prod(shape)
+    m, whole = loads.of_body._replace(contrast=contrast), math.prod(shape)
     # The interval is that of a block, whose voxels are split in two.
     split = 9 * min(whole, BLOCK)
     costs = [work("fft-plain", m, number) for number in (whole, split)]
@@ -221,12 +221,15 @@ def _on_voxels(loads, parts, fixed):
 
 def _law(method, loads):
     """Name of a method's law and the measures that it is asked of, those of the largest part."""
-    return law_and_measures(method, max(loads.parts.values(), key=lambda each: each.volume))
+    return _law_of(method, loads.largest, loads.of_largest)
 
 
 def law_and_measures(method: str, scene: Scene) -> tuple[str, Measures]:
     """Name of a method's law, of the FFT that of the rule which its solver takes by itself, and what it is asked of."""
-    m = measures(scene)
+    return _law_of(method, scene, measures(scene))
+
+
+def _law_of(method, scene, m):
     if method == "fft":
         # Loads what is heavy, as do multipoles.
         from references.fft.rules import automatic

@@ -28,7 +28,7 @@ from demheat.scene.checks import (
     checked_sources,
 )
 from demheat.scene.dependence import Dependences
-from demheat.scene.frozen import table_of
+from demheat.scene.frozen import read_only, table_of
 from demheat.scene.functions import load_at
 from demheat.scene.image import Image
 from demheat.scene.inputs import LEAST, MOST, moderate, vector
@@ -300,13 +300,17 @@ class Scene:
 
         Inclusions are disjoint or nested, so the one that holds a single point of another holds all of it.
         """
+        return self._parents
+
+    @cached_property
+    def _parents(self):
         points = [shape.point_in(self.size, periodic=self.periodic) for shape in self.inclusions]
         points = np.array(points).reshape(-1, 3)
         parent = np.zeros(len(points) + 1, dtype=np.int64)
         for inner, outer in self._holders.pairs(points):
             before = outer < inner
             np.maximum.at(parent, inner[before] + 1, outer[before] + 1)
-        return parent
+        return read_only(parent)
 
     def only(self, *shapes: type[Shape]) -> bool:
         """Whether all inclusions are of these shapes; True if there is none, but not of an image."""

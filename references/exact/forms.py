@@ -310,16 +310,19 @@ def _coated(scene):
     """Pairs (outer, inner) if all inclusions are neutral coated spheres, else None; `fractions` refuses cut ones."""
     if not scene.inclusions or not scene.only(Sphere) or scene.resistances.any():
         return None
+    parents = scene.parents()[1:]
+    inner = np.flatnonzero(parents)
+    outer = parents[inner] - 1
+    # Every second sphere lies in one of its own, which lies in none.
+    if 2 * len(inner) != len(parents) or len(np.union1d(inner, outer)) != len(parents):
+        return None
     centers = np.array([sphere.center for sphere in scene.inclusions])
-    apart = centers[:, None] - centers[None]
+    apart = centers[inner] - centers[outer]
     if scene.periodic:
         apart -= np.array(scene.size) * np.round(apart / scene.size)
-    together = np.linalg.norm(apart, axis=2) <= SAME * max(scene.size)
-    if np.any(together.sum(axis=1) != 2):
+    if np.any(np.linalg.norm(apart, axis=1) > SAME * max(scene.size)):
         return None
-    # Scenes list the outer sphere first.
-    pairs = [np.flatnonzero(row) for row in together]
-    pairs = [(scene.inclusions[i], scene.inclusions[j]) for k, (i, j) in enumerate(pairs) if k == i]
+    pairs = [(scene.inclusions[i], scene.inclusions[j]) for i, j in zip(outer, inner, strict=True)]
     return pairs if all(_neutral(scene, *pair) for pair in pairs) else None
 
 

@@ -225,7 +225,7 @@ def test_intervals_that_reach_to_one_side_are_held_whole():
     speck = Scene((1.0, 1.0, 1.0), Material(1.0), [Sphere((0.5, 0.5, 0.5), 0.019, Material(100.0))], gradient=(0, 1, 0))
     error = fft.solve(speck, voxels=24).error
     loads = loads_of(speck)
-    found = answers.answer(ways.Way("fft", {"voxels": 24}), loads._replace(parts=loads.wholes))
+    found = answers.answer(ways.Way("fft", {"voxels": 24}), replace(loads, parts=loads.wholes))
     assert error.lower == pytest.approx(1.0, abs=1e-9) and error.upper > 1.0001
     assert np.all(np.diag(found.tensor + found.half) >= error.upper - 1e-12)
 

@@ -218,6 +218,16 @@ CUBE = gallery.sphere_in_cube()
 BALL = CUBE.inclusions[0]
 COATED = gallery.coated_sphere()
 PAIR = gallery.body_centred()
+BEAD = replace(COATED.inclusions[1], radius=0.001, center=(0.01, 0.01, 0.01))
+
+
+def _in_core(scene):
+    """A poor sphere in the core, with which that would leave the matrix unmoved if it were a coat itself."""
+    core, own = scene.inclusions[1], scene.matrix.conductivity / 10
+    k = core.material.conductivity
+    ratio = scene.matrix.conductivity / k
+    part = (ratio - 1) * (own + 2 * k) / ((own - k) * (2 + ratio))
+    return replace(core, material=Material(own), radius=core.radius * part ** (1 / 3))
 
 
 @pytest.mark.parametrize(
@@ -234,6 +244,7 @@ PAIR = gallery.body_centred()
         replace(COATED, matrix=Material(COATED.matrix.conductivity * (1 + 1e-9))),
         replace(COATED, inclusions=[COATED.inclusions[0], replace(COATED.inclusions[1], center=(0.05, 0.05, 0.051))]),
         replace(COATED, inclusions=[replace(s, center=(0.02, 0.05, 0.05)) for s in COATED.inclusions]),
+        replace(COATED, inclusions=[*COATED.inclusions, _in_core(COATED), BEAD]),
     ],
 )
 def test_refuses_what_has_no_closed_form(scene):
