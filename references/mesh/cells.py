@@ -167,7 +167,10 @@ def check(scene, mesh):
         volume = np.bincount(labels, volumes, len(scene.materials))
         bad = np.bincount(labels[wanted != phase], volumes[wanted != phase], len(scene.materials))
         for number in np.flatnonzero(bad > MISLABELLED * volume):
-            raise RuntimeError(f"phase {number}: {bad[number]:.3g} of its {volume[number]:.3g} m3 are misplaced")
+            raise RuntimeError(
+                f"phase {number}: {bad[number]:.3g} of its {volume[number]:.3g} m3 are misplaced: it may be thinner than "
+                "the elements, which a smaller size mends"
+            )
     count = np.bincount(phase, minlength=len(scene.materials))
     for number, inclusion in enumerate(scene.inclusions, start=1):
         # Other inclusions can fill a layer or the matrix, but never a sphere or another body.
