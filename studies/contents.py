@@ -11,7 +11,7 @@ HEADLINES = (
     ("time_integrators", "particle-steps per second over whole steps of LAMMPS with its usual"),
     ("estimates", "DEM: share of exact conductivities inside of the interval"),
     ("brackets", "Exact values outside of their brackets, of"),
-    ("hard_cases", "Silently wrong"),
+    ("hard_cases", "Silently wrong by the main methods"),
 )
 
 HADDAD = "Haddad et al., Int. J. Thermal Sciences 164 (2021) 106799"

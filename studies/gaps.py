@@ -159,7 +159,7 @@ def _claims(df):
 def table(df):
     """Which method holds to which gap: error, % ("in": more than 2 %, inside of its interval; "out": not inside).
 
-    Gaps over the radius of the (smaller) sphere; multipoles show the conductivity over the matrix's.
+    Gaps over the radius of the (smaller) sphere; multipoles, known to .01 %, show the conductivity over the matrix's.
     """
     import pandas as pd
 
@@ -182,13 +182,15 @@ def table(df):
 
 
 def _told(value):
-    return "" if value is None or value != value else f"{value:.5g}"
+    return "" if value is None or value != value else f"{value:.4g}"
 
 
 def _cell(row):
     if row["status"] != "ok":
         return {"unsupported": "refused"}.get(row["status"], row["status"])
-    return f"{row['error_percent']:+.2g}" + ("" if row["right"] else " in" if row["inside"] else " out")
+    # The truth is known to a hundredth of a per cent.
+    told = round(row["error_percent"], 2)
+    return (f"{told:+.2g}" if told else "0") + ("" if row["right"] else " in" if row["inside"] else " out")
 
 
 def plot(df):

@@ -201,8 +201,8 @@ def words(df):
         once, least = (each["three_s"] / each[name] for each, name in ((rows, "once_s"), (cubes, "least_s")))
         parts.append(f"{once.median():.2g} and {least.median():.2g} ({methods.all_methods()[method].title})")
     return (
-        "processor time of three solves over that of one set-up for all three, and over that of the loads needed on an "
-        f"eighth of the body, medians: {', '.join(parts)}"
+        "processor time of three solves over that of one set-up for all three, and over that of the load needed on an "
+        f"eighth of the body where one is enough, medians: {', '.join(parts)}"
     )
 
 

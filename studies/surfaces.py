@@ -42,7 +42,8 @@ PAPER = {}
 # Why claims on the stored rows fail.
 FAILS = {
     "10000 to 400000 particles: lowest order": (
-        "at contrast .01 the error of 10000 particles is 2e-5 %, as it changes sign there: no order can be read off"
+        "at contrast .1 the mean of three packings of 10000 is 6e-5 %, as two of them are negative there: no "
+        "order can be read off; at contrasts of 10 and 100 it is 2.2 to 2.3"
     ),
 }
 # Limits that are far from the values, and why they are no nearer.
@@ -122,8 +123,8 @@ def table(df):
     """Error, %, of each method and contrast against the number of particles, and the order.
 
     Of the default that is the mean over three packings up to 100 000 particles; all else is of one packing.
-    Its error changes sign between 10 000 and 100 000 particles, so that its order, fitted to absolute values, is none
-    of the scheme (docs/decisions/order.md).
+    In poor conductors the error of packings of 10 000 is of either sign, so that the order there, fitted to absolute
+    values, is none of the scheme (docs/decisions/order.md).
     """
     import pandas as pd
 

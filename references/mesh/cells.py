@@ -168,8 +168,8 @@ def check(scene, mesh):
         bad = np.bincount(labels[wanted != phase], volumes[wanted != phase], len(scene.materials))
         for number in np.flatnonzero(bad > MISLABELLED * volume):
             raise RuntimeError(
-                f"phase {number}: {bad[number]:.3g} of its {volume[number]:.3g} m3 are misplaced: it may be thinner than "
-                "the elements, which a smaller size mends"
+                f"phase {number}: {bad[number]:.3g} of its {volume[number]:.3g} m3 are misplaced: it may be "
+                "thinner than the elements, which a smaller size mends"
             )
     count = np.bincount(phase, minlength=len(scene.materials))
     for number, inclusion in enumerate(scene.inclusions, start=1):

@@ -95,7 +95,7 @@ def run(part, scene, seed, method):
 def claims(df):
     """The exact value lies inside, and the interval is not a blanket: half of it five times the error at most.
 
-    Of the DEM as in the paper two was asked for when one was known.
+    Of errors below 1e-5 % no ratio is formed. Of the DEM as in the paper two was asked for when one was known.
     """
     from studies.estimates.means import inside, over, present
 
@@ -134,8 +134,9 @@ def table(df):
 
 def costs(df):
     """What an estimate costs over its solve, medians over scenes, one of each kind."""
-    rows = [(name, df[f"{name}_more_s"] / df[f"{name}_cpu_s"]) for name in ("dem", "fft", "fem")]
-    return ", ".join(f"{ratio.median():.2g} ({all_methods()[name].title})" for name, ratio in rows)
+    rows = [(name, (df[f"{name}_more_s"] / df[f"{name}_cpu_s"]).dropna()) for name in ("dem", "fft", "fem")]
+    told = ", ".join(f"{ratio.median():.2g} ({all_methods()[name].title})" for name, ratio in rows)
+    return f"{told} in the median over {max(len(ratio) for _, ratio in rows)} unseen scenes, one of each kind"
 
 
 def words(df):

@@ -13,6 +13,10 @@ def present(df, name):
     return f"{name}_off" in df and df[f"{name}_off"].notna().any()
 
 
+# Errors, %, that are as good as none: what is said over them is endless.
+NOTHING = 1e-5
+
+
 def answered(df, name):
     """Rows of scenes with a conductivity that the method has answered."""
     return df[df[f"{name}_off"].notna() & (df["exact"] > 0)]
@@ -27,7 +31,7 @@ def inside(df, name, what=""):
     return rows[f"{name}_{what}off"].abs() <= rows[f"{name}_{what}half"] + 100 * ACCURACY
 
 
-def over(df, name, what="", nothing=1e-5):
+def over(df, name, what="", nothing=NOTHING):
     """What the method says over its error, for each scene where there is one."""
     rows = answered(df, name)
     rows = rows[rows[f"{name}_{what}off"].abs() > nothing]
@@ -44,7 +48,10 @@ def intervals_in_words(df, names):
     names = [name for name in names if present(df, name)]
     held = [f"{inside(df, name).sum()} of {len(inside(df, name))} ({all_methods()[name].title})" for name in names]
     wide = [f"{over(df, name).median():.2g}" for name in names]
-    return f"{', '.join(held)}; half of it was {', '.join(wide)} times the error in the median"
+    return (
+        f"{', '.join(held)}; half of it was {', '.join(wide)} times the error in the median of errors beyond "
+        f"{NOTHING:g} %"
+    )
 
 
 def answers_in_words(asked, accuracy):

@@ -215,7 +215,7 @@ def claims(df):
         (fairer(df, other), "where all have a loose tolerance and the DEM is extrapolated, on a second machine"),
     ):
         pairs = compared(ways)
-        text = f"Pairs of scene and accuracy whose cheapest method is another {where}, share"
+        text = f"Pairs of scene and accuracy with no winner in common {where}, share"
         if pairs:
             yield text, len(others(pairs)) / len(pairs), 0.1
 

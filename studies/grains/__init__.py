@@ -2,9 +2,10 @@
 
 `array`: simple, body- and face-centred cubic arrays of grains that do not quite touch, in a medium, against Rayleigh's
 exact values. `contact`: a row of grains that share discs, in a vacuum and in a medium, against elements on the cell of
-one grain. `bed`: spheres at random, hundredths of a diameter apart at least, against multipoles. Grains have the radius
-1, the medium the conductivity 1 (in a vacuum the grains). All is by the laws of `demheat.grains`, discs of gaps half a
-radius wide; `wide` is with discs of a whole radius.
+one grain, a cylinder 1.05 times as wide as the grain (beside one 1.13 times as wide, as large as a grain's part of the
+array, some .34 k of the medium more would pass at a contrast of 10). `bed`: spheres at random, hundredths of a diameter
+apart at least, against multipoles. Grains have the radius 1, the medium the conductivity 1 (in a vacuum the grains).
+All is by the laws of `demheat.grains`, discs of gaps half a radius wide; `wide` is with discs of a whole radius.
 """
 
 from studies.grains.cases import (

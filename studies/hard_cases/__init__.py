@@ -99,7 +99,11 @@ def _claims(df):
     each = verdicts(df)
     main = each["method"].str.split(",").str[0].map(is_main)
     wrong = (each["outcome"] == "wrong") & main
-    yield "Silently wrong, refusals without a reason among them", int(wrong.sum()) if len(each) else None, "= 0"
+    yield (
+        "Silently wrong by the main methods, refusals without a reason among them",
+        int(wrong.sum()) if len(each) else None,
+        "= 0",
+    )
     beside = each[~main & each["outcome"].isin(JUDGED)]
     yield "Of what stands beside the main methods: silently wrong, share", (beside["outcome"] == "wrong").mean(), 0.05
     yield "Share of cases whose certain bounds are too wide to judge", (each["outcome"] == "open").mean(), 0.03

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import tempfile
 from contextlib import contextmanager, suppress
@@ -9,7 +10,7 @@ from pathlib import Path
 
 
 def folder():
-    """Where every running row of this user has a file that is called as its process."""
+    """Where every running row of this user has a file that is called as its process, and locked by it."""
     return Path(tempfile.gettempdir()) / f"demheat-rows-{os.getuid()}"
 
 
@@ -20,7 +21,10 @@ def counted():
     own = folder() / str(os.getpid())
     try:
         own.parent.mkdir(mode=0o700, exist_ok=True)
-        own.touch()
+        held = own.open("w")
+        # Of this process alone: what it forks does not hold it, and what has died holds nothing, whoever has its number
+        # now.
+        fcntl.lockf(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
         yield found
         return
@@ -30,6 +34,7 @@ def counted():
         found["beside"] = max(before, _others(own))
     finally:
         own.unlink(missing_ok=True)
+        held.close()
 
 
 def _others(own):
@@ -37,13 +42,11 @@ def _others(own):
 
 
 def _alive(path):
-    """Whether a file's process runs; the file of one that was killed is removed."""
-    try:
-        os.kill(int(path.name), 0)
-    except (ProcessLookupError, ValueError):
-        with suppress(OSError):
-            path.unlink()
-        return False
-    except PermissionError:
-        pass
-    return True
+    """Whether a file is locked by its process; the file of one that was killed is removed."""
+    with suppress(FileNotFoundError), path.open("r+") as file:
+        try:
+            fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            return True
+        path.unlink(missing_ok=True)
+    return False

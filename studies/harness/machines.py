@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections import Counter
 
+from studies.harness.quiet import NOISY
+
 
 def origins(rows):
     """Which machine each row is from; one of unknown host is taken for the only other of its model, if there is one."""
@@ -32,10 +34,17 @@ def said(df):
     lines, count = [], len(set(origins(df.to_dict("records"))))
     if count > 1:
         lines.append(f"rows are from {count} machines: seconds of all but the one that made most are left out")
-    crowded = int((df["beside"] > 0).sum()) if "beside" in df else 0
-    if crowded:
+    if crowded := _crowded(df):
         lines.append(f"{crowded} rows ran beside others on their machine: alone they would have cost less")
     return lines
+
+
+def _crowded(df):
+    """How many rows ran beside others; what was counted where nobody used a tenth of the processors was dead."""
+    if "beside" not in df:
+        return 0
+    alone = df["noise"] <= NOISY if "noise" in df else False
+    return int(((df["beside"] > 0) & ~alone).sum())
 
 
 def _text(value):

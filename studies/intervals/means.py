@@ -85,7 +85,7 @@ def in_words(each):
         f"{held(rows).sum()} of {len(rows)} ({title(name)}, {over(rows).median():.2g} times the error in the median)"
         for name, rows in each.groupby("method", sort=False)
     ]
-    return ", ".join(said)
+    return ", ".join(said) + "; medians are over errors that are known well and more than rounding"
 
 
 def lines(df):

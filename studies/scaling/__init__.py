@@ -24,6 +24,7 @@ STRONG, WEAK = (20_000, 1_000_000), (500_000, 1_000_000)  # particles of all ran
 RELEASED = "0ab3669"  # version 0.2.0
 BEFORE, MOST = 8_000_000, 30_000_000  # particles
 ACCURACY = 1e-4  # of the multipoles
+JUDGES = 1e-6  # of those that the cell of 83 spheres is judged by
 PAPER = {}
 # Largest error of what a method spends on an inclusion, %.
 COARSE = {"dem": 0.8, "fft": 4.0}
@@ -37,7 +38,7 @@ REASONS = {
 FAILS = {
     "FFT, scalar: exponent of the CPU time in inclusions": (
         "its grids were chosen by spheres, not for the FFT: one of 92 voxels, 4 times 23, suits it badly, and "
-        "each voxel costs twice what it does in 64; and of that of 30 a part does not grow"
+        "each voxel costs half as much again as in 64; and of that of 30 a part does not grow"
     ),
     "DEM, 8e6: CPU time over that of version 0.2.0": (
         "that version repeated a smaller packing of so many, so that tiles spare little here; cells are cut once for "
@@ -83,7 +84,8 @@ def _cases():
             yield methods.case(name, **scene, **_spent(name, number))
     for particles in PARTICLES:
         yield methods.case("dem", part="elements", particles=particles, seed=0, cores=THREADS)
-    yield methods.case("multipole", part="elements", accuracy=ACCURACY)
+    for accuracy in (ACCURACY, JUDGES):
+        yield methods.case("multipole", part="elements", accuracy=accuracy)
     for ranks in RANKS:
         for particles in STRONG:
             yield methods.case("dem", part="strong", number=1, particles=particles, seed=0, ranks=ranks)
@@ -102,6 +104,11 @@ def QUICK(case):
     if case["part"] == "elements":
         return case.get("particles", 0) <= 10_000 and case.get("voxels", 0) <= 64
     return case["part"] == "strong" and case["particles"] == STRONG[0]
+
+
+def VALUES(case):
+    """What others are judged by: nobody asks what that costs."""
+    return case.get("accuracy") == JUDGES
 
 
 def run(name, part, number=None, kind=None, fraction=None, *, method, **knobs):
@@ -181,7 +188,11 @@ def _goal(df):
     if len(many) and len(one):
         ratio = _cached(many) / _cached(one)
         yield f"DEM, {MANY} particles, packing there: CPU time for {GOAL} spheres over that for one", ratio, 3.0
-        yield f"DEM, {GOAL} spheres: error, %", largest(many, "error_percent"), 0.015
+        yield (
+            f"DEM, {GOAL} spheres: off multipoles that are known to {100 * ACCURACY:g} %, %",
+            largest(many, "error_percent"),
+            0.015,
+        )
     exact = pick(rows, name="multipole")
     if len(exact):
         yield f"Multipoles, {GOAL} spheres to {ACCURACY:g}: CPU seconds", exact["cpu_s"].iloc[0], 45.0
@@ -243,7 +254,8 @@ def table(df):
     """CPU and wall seconds of every row, of the DEM by stages, then fits.
 
     Seconds of the DEM count its packing, cut from a tile. GiB are the peak over what was there before. Errors are
-    those of k against the multipoles' of the same spheres; coarse rows are there for their costs. "of triad" is the
+    those of k against the multipoles' of the same spheres, the nearest there are: those of many are known to .01 %, no
+    more; coarse rows are there for their costs. "of triad" is the
     bandwidth of the product of the network's matrix with a vector over that of the triad, a = b + s c on arrays too
     large for caches, right after it with as many threads. Exponents are fitted to rows of 100 inclusions or 50 000
     unknowns and more, each with its standard error. The last lines say what 1e9 unknowns would take if the fits went

@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 
 import pandas as pd
 import pytest
@@ -47,7 +48,11 @@ def test_pages_and_the_list_say_it(tiny, capsys, monkeypatch):
     path = tiny.out / f"{tiny.name}.csv"
     study, rows = runner.load(tiny.name), list(tiny.rows().values())
     assert "machines" not in render(study, path)[1] and rows[0]["host"] == host()
-    store.write_rows(path, [rows[0] | {"beside": "0"}, rows[1] | {"host": "another", "beside": "2"}])
+    crowded = rows[1] | {"host": "another", "beside": "2", "noise": "0.02"}
+    store.write_rows(path, [rows[0] | {"beside": "0"}, crowded])
+    # Those two did nothing.
+    assert "ran beside others" not in render(study, path)[1]
+    store.write_rows(path, [rows[0] | {"beside": "0"}, crowded | {"noise": "0.5"}])
     df = read_frame(study, path)
     assert df["cpu_s"].notna().sum() == 1
     page = render(study, path)[1]
@@ -60,18 +65,32 @@ def test_pages_and_the_list_say_it(tiny, capsys, monkeypatch):
     assert read_frame(study, path)["cpu_s"].notna().all() and "machines" not in render(study, path)[1]
 
 
+ROW = """
+import sys
+from pathlib import Path
+from studies.harness import beside
+beside.folder = lambda: Path(sys.argv[1])
+with beside.counted():
+    print("begun", flush=True)
+    sys.stdin.read()
+"""
+
+
 def test_rows_beside_are_counted_and_the_dead_are_not(tmp_path, monkeypatch):
-    monkeypatch.setattr(beside, "folder", lambda: tmp_path / "rows")
+    folder = tmp_path / "rows"
+    monkeypatch.setattr(beside, "folder", lambda: folder)
     with beside.counted() as alone:
         pass
-    assert alone == {"beside": 0} and list((tmp_path / "rows").iterdir()) == []
-    dead = subprocess.Popen(["true"])
-    dead.wait()
-    for pid in (os.getppid(), dead.pid):
-        (tmp_path / "rows" / str(pid)).touch()
-    with beside.counted() as found:
-        pass
-    assert found == {"beside": 1} and not (tmp_path / "rows" / str(dead.pid)).exists()
+    assert alone == {"beside": 0} and list(folder.iterdir()) == []
+    # Of one that was killed, whose number another process has now.
+    (folder / str(os.getppid())).touch()
+    words = [sys.executable, "-c", ROW, str(folder)]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
+        assert other.stdout.readline() == "begun\n"
+        with beside.counted() as found:
+            pass
+        left = [path.name for path in folder.iterdir()]
+    assert found == {"beside": 1} and left == [str(other.pid)] and list(folder.iterdir()) == []
 
 
 def test_where_no_file_can_be_written_nothing_is_counted(tmp_path, monkeypatch):
