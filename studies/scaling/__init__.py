@@ -32,6 +32,7 @@ COARSE = {"dem": 0.8, "fft": 4.0}
 REASONS = {
     "share begun again": "none should be; one in a hundred would cost no more than the clock's noise",
     "conductivity of two ranks against one": "asked of two programs with one answer; tolerances are lower",
+    "error against the multipoles": "set when those that judged were .003 % off themselves",
     "off one": "two clocks that are 15 % off, either way, over a factor of 30 in inclusions and their caches",
 }
 # Why claims on the stored rows fail.
