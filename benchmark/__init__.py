@@ -3,8 +3,6 @@
 `names()` lists them, `load(name)` gives a scene and what is known of it.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 Without names all of them, in some minutes; spheres that were drawn at random stay where the files have them.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re

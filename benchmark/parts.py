@@ -1,7 +1,5 @@
 """Scenes as tables of JSON: all numbers in SI, every inclusion by its own, the matrix the first material."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 
 import numpy as np

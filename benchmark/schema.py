@@ -1,7 +1,5 @@
 """What a value lacks of a JSON Schema, for those of its words that schema.json uses."""
 
-from __future__ import annotations
-
 import math
 import re
 

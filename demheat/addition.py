@@ -3,8 +3,6 @@
 Source: Widom, J. Chem. Phys. 44 (1966) 3888.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.powers import cube_root

@@ -1,7 +1,5 @@
 """Methods found where their modules declare them: loaded by their names alone, so that nothing heavy loads early."""
 
-from __future__ import annotations
-
 import pkgutil
 import re
 from dataclasses import replace

@@ -6,8 +6,6 @@ that any pair asks for counts, since errors cross zero by luck. How much the lar
 always was found on drawn scenes for the main methods; study `estimates` judges it on others.
 """
 
-from __future__ import annotations
-
 import math
 import threading
 import warnings

@@ -7,8 +7,6 @@ on a slower fall, as `demheat.error` does. Orders and safeties were found on dra
 seeds), and are judged on others.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

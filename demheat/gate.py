@@ -9,8 +9,6 @@ whatever the reason, and so are fractions that differ by more than that from the
 the upper bounds are infinite.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 They are declared here and at work in `demheat.dem.networks`, so that naming a law loads no engine.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from typing import ClassVar
 

@@ -5,8 +5,6 @@ that knows the effective conductivity alone, `estimate(scene) -> float`. What it
 `METHODS` of that module: one entry for each way of fixing its knobs that studies tell apart.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple

@@ -5,8 +5,6 @@ processor has AVX-512, and rounds otherwise there: every other cube root differs
 grow such a bit until they are other spheres. Here is what asks the C library instead, which looks at no such thing.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

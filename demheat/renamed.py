@@ -1,7 +1,5 @@
 """Modules by names that they have not: those of 0.2.0, which warn in 0.3 alone, and misspelt ones, which are told."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 from importlib import import_module

@@ -5,8 +5,6 @@ image a block out of its middle is split, and what that changes there, in parts 
 all of it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

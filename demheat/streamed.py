@@ -1,7 +1,5 @@
 """A solve in slabs on disk, as it was called: `demheat.mpi` is the way past one machine's memory now."""
 
-from __future__ import annotations
-
 import warnings
 
 from demheat import dem

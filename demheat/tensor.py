@@ -3,8 +3,6 @@
 Every method's `solve_axes` solves these three loads and sets up only once what they have in common.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Samples at the midpoints of equal cells, for methods that have no points of their own."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.runtime.limits import check_memory

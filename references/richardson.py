@@ -4,8 +4,6 @@ Richardson, Phil. Trans. R. Soc. A 210 (1911) 307; the order from three sizes as
 405, for any ratio of sizes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Plain Python threads for compiled loops that release the interpreter's lock: they sleep while they wait."""
 
-from __future__ import annotations
-
 import os
 from concurrent.futures import ThreadPoolExecutor
 from numbers import Integral

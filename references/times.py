@@ -1,7 +1,5 @@
 """The times at which transients are asked for, checked once."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene.inputs import LEAST, MOST, moderate, reals

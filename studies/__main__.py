@@ -1,7 +1,5 @@
 """Command line of the studies: list, run, render, row, jobs, gather, replay, accept, check, report."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys

@@ -15,7 +15,6 @@ from studies.harness import methods
 from studies.harness.cost import measured
 from studies.harness.pick import pick, present
 
-PAPER = {}
 ONE, OTHER = orthotropic(1.0, 4.0, 9.0, rotation=(0.3, -0.5, 0.8)), orthotropic(3.0, 1.0, 0.2, rotation=(1.0, 0.0, 2.0))
 BODIES = ("homogeneous", "layers", "sphere")
 EDGES, VOXELS = (1 / 6, 1 / 10, 1 / 16), (16, 32, 64)
@@ -48,16 +47,12 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
     """The two coarsest of each."""
     return case.get("edge", 1.0) > EDGES[2] if case["method"] == "fem" else case["voxels"] < VOXELS[2]
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def scene_of(body) -> Scene:
@@ -96,11 +91,6 @@ def _error_percent(body, scene, found):
         return None
     right = conductivity_tensor(methods.load("exact").solve_axes(scene))
     return 100 * np.linalg.norm(found - right) / np.linalg.norm(right)
-
-
-def warm_up(body, name, method, **knobs):
-    """Load and compile."""
-    run("homogeneous", name, method, **knobs | ({"edge": 1.0} if method == "fem" else {"voxels": 4}))
 
 
 def tensor_of(row):

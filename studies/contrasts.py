@@ -31,7 +31,6 @@ REASONS = {
     "and at infinity": "iterations stop at 1e-8 of the heat, of either",
     "chain without": "what a contact passes has terms beside the logarithm",
 }
-PAPER = {}
 CASES = [
     {"body": body, "resistance": resistance, "contrast": contrast, "method": method}
     for method in GIVEN
@@ -40,16 +39,12 @@ CASES = [
     for resistance in RESISTANCES
     for contrast in CONTRASTS
 ]
+VALUES = True
 
 
 def QUICK(case):
     """One sphere without a resistance."""
     return case["body"] == "one" and case["resistance"] == 0
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def scene_of(body, resistance, contrast) -> Scene:
@@ -75,10 +70,6 @@ def run(body, resistance, contrast, method):
         except (NotImplementedError, RuntimeError) as error:
             return {"status": "unsupported", "note": f"refused: {' '.join(str(error).split())}"}
     return {"iterations": field.stats["iterations"], "conductivity": field.conductivity}
-
-
-def warm_up(body, resistance, contrast, method):
-    """Nothing: costs are not what is shown."""
 
 
 def claims(df):

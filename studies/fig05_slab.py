@@ -55,17 +55,13 @@ CASES = [
     for seed in SEEDS[: 3 if law == "laguerre" and number <= 10_000 else 1]
     if wall != "surface" or number > 1_000
 ]
+VALUES = True
 
 
 def QUICK(case):
     """One packing of 1000 for each law, and of 3000 for Laguerre and where wall temperatures are at the wall."""
     most = 3_000 if case["law"] == "laguerre" or case["wall"] == "surface" else 1_000
     return case["particles"] <= most and case["seed"] == 0
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def run(law, wall, particles, seed, method):
@@ -107,13 +103,6 @@ def _errors(field, exact):
         f"profile_error_{t}": cell(100 * slice_means(y, off.values, SLICES)[1] / span),
         f"relative_slice_{t}": 100 * np.nanmax(np.abs(slice_means(y, local, SLICES)[1])),
     }
-
-
-def warm_up(law, wall, particles, seed, method):
-    """Load and compile; the packing, kept or made anew, is not part of what is compared."""
-    packing_of(particles, seed)
-    # Wall temperatures at the wall need a bulk between the layers at the walls.
-    run(law, wall, 3_000 if wall == "surface" else 500, 99, method)
 
 
 def claims(df):

@@ -51,16 +51,12 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
     """One packing of 2000 for each law."""
     return case.get("particles") == NUMBERS[0] and case["seed"] == 0
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def run(law, method, **case):
@@ -110,16 +106,6 @@ def _compared(fields, row):
         row |= {"profile_x": cell(middle), f"profile_{t}": cell(mean)}
         row[f"profile_error_{t}"] = cell(slice_means(x, off.values)[1])
         yield field
-
-
-def warm_up(law, method, **case):
-    """Load and compile; the packing, kept or made anew, is not part of what is compared."""
-    if method == "fem":
-        return
-    from studies.common.terreros import beam, packing_of
-
-    packing_of(beam(), case["particles"], case["seed"])
-    run(law, method, **case | {"particles": 1_000, "seed": 99})
 
 
 def claims(df):

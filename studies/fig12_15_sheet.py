@@ -51,6 +51,7 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -58,11 +59,6 @@ def QUICK(case):
     if case["method"] == "fem":
         return case["size"] == COARSE
     return case["particles"] == NUMBERS[0] and case["seed"] < 2 and case["law"] != "calibrated"
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def run(law, method, **case):
@@ -94,17 +90,6 @@ def _fields(scene, law, method, **case):
     if case["coordination"] is not None:
         contact = {"gap": bulk_gap(case["coordination"])}
     return evolve(scene, TIMES, packing=packing, law=law, accuracy=ACCURACY, **contact)
-
-
-def warm_up(law, method, **case):
-    """Load and compile; the packing, kept or made anew, is not part of what is compared."""
-    from studies.common.terreros import packing_of, sheet
-
-    if method == "fem":
-        run(law, method, size=4 * COARSE)
-        return
-    packing_of(sheet(), case["particles"], case["seed"])
-    run(law, method, **case | {"particles": NUMBERS[0], "seed": 99})
 
 
 def curves_of(rows, name):

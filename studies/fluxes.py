@@ -51,7 +51,6 @@ def _case(scene, way, seconds):
 CASES = list(_cases())
 # Limits from elsewhere: guessed before there were rows.
 ELSEWHERE = ("Scenes on which",)
-PAPER = {}
 TIMEOUT = 900.0
 # A search repeats what decides by itself.
 REPEATS = 1

@@ -34,7 +34,6 @@ ASKED = (*(name for name in SPENT if name != "multipole"), LINKS)
 LARGE, SMALL, RIGHT = 0.3, 0.15, 2.0
 # Digits that lattice sums must have to judge multipoles.
 DIGITS = 4
-PAPER = {}
 # A limit that is far from the value, and why it is no nearer.
 REASONS = {"worst error, %": "set before any row was made, when a trial at contrast 100 was 6 % off"}
 TIMEOUT = 300.0
@@ -53,6 +52,7 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -60,11 +60,6 @@ def QUICK(case):
     if case["scene"] != "cubic" or case["contrast"] not in (100.0, math.inf) or case["name"] == "fem":
         return False
     return case["gap"] >= 1e-2 or (case["gap"] == 1e-3 and math.isinf(case["contrast"]))
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def scene_of(scene, contrast, gap):
@@ -106,11 +101,6 @@ def _by_sums(scene, contrast, gap):
         return {"lattice": lattice.conductivity("sc", contrast, 4 / 3 * math.pi * radius**3, digits=DIGITS)}
     except ValueError:
         return {}
-
-
-def warm_up(name, scene, contrast, gap, method, **knobs):
-    """Load the solver."""
-    methods.warm_up(method, **{key: value for key, value in knobs.items() if key != "accuracy"})
 
 
 def judged(df):

@@ -39,7 +39,7 @@ def _cases():
 
 
 CASES = list(_cases())
-PAPER = {}
+VALUES = True
 # Why claims on the stored rows fail.
 FAILS = {
     "image of 32^3, DEM without twins, 100000 particles": (
@@ -53,11 +53,6 @@ def QUICK(case):
     return case["n"] <= 32 and case["n"] * case["parts"] <= 64 and case.get("particles", 0) <= 10_000
 
 
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
-
-
 def run(name, n, parts, method, **knobs):
     """Solve the image of the array and compare with the exact value."""
     array = simple_cubic(CONTRAST, fraction=FRACTION)
@@ -68,11 +63,6 @@ def run(name, n, parts, method, **knobs):
     scene = Scene.of_image(image, gradient=array.gradient)
     _, row = methods.solved(scene, methods.exact_ratio(FRACTION, CONTRAST), method=method, **knobs)
     return row | {"volume_percent": 100 * value_error(float(image.fractions[1]), FRACTION)}
-
-
-def warm_up(name, n, parts, method, **knobs):
-    """Load the solver."""
-    methods.warm_up(method, **knobs)
 
 
 def claims(df):

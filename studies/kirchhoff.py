@@ -14,7 +14,6 @@ from studies.harness import methods
 from studies.harness.cost import measured
 from studies.harness.pick import order, pick, present
 
-PAPER = {}
 BODIES, FACTORS = ("layers", "sphere"), (2.0, 10.0)
 NUMBERS, EDGES = (1_000, 3_000, 30_000), (1 / 6, 1 / 12)
 KNOBS = {"dem": {"method": "dem"}, "fem": {"method": "fem", "order": 2}, "fem-p1": {"method": "fem", "order": 1}}
@@ -37,6 +36,7 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -46,11 +46,6 @@ def QUICK(case):
     if case["method"] == "dem":
         return case["particles"] <= NUMBERS[1]
     return case["edge"] >= EDGES[1 if (case["body"], case["factor"]) == ("layers", FACTORS[0]) else 0]
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def scene_of(body, factor) -> Scene:
@@ -87,15 +82,6 @@ def _from_linear(scene, field, module, knobs):
     simple, _ = linear(scene)
     plain = module.solve(simple, **knobs)
     return abs(referee.value_error(field.mean_flux[1], plain.mean_flux[1]))
-
-
-def warm_up(body, factor, name, method, **knobs):
-    """Load and compile, and keep the packing."""
-    if method == "dem":
-        from demheat.packing.cache import relaxed
-
-        relaxed(knobs["particles"], size=(1.0, 1.0, 1.0), periodic=False, seed=0)
-    run(body, FACTORS[0], name, method, **knobs | ({"particles": 500} if method == "dem" else {"edge": 1 / 2}))
 
 
 def claims(df):

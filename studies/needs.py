@@ -63,7 +63,6 @@ CASES = [
     for method in FULL
     if (size, method) != ("full", "fem") or scene not in DEAR
 ] + [{"scene": "sphere in dust", "method": "multipole", "size": "full"}]
-PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "Tensor by one set-up": "the same equations: rounding of sums over 1e5 elements",
@@ -74,7 +73,6 @@ REASONS = {
 FAILS = {
     "fft: CPU-s of three solves over those of one set-up": "what is set up once is a small part of an FFT solve",
 }
-TIMEOUT = 1800.0
 
 
 def QUICK(case):

@@ -63,8 +63,8 @@ def _resolutions(method):
 
 
 CASES = list(_cases())
+VALUES = True
 MODULES = {"lattice": "references.exact.lattice"}
-PAPER = {}
 # At a contrast of 1e6 rounding of temperatures in what conducts well leaves 1e-10 of heat there at each of 1e4 voxels.
 TOLERANCES = {"heat_imbalance": Tolerance(0.0, 1e-5)}
 # Limits that are far from the values, and why they are no nearer.
@@ -81,11 +81,6 @@ def QUICK(case):
     fractions = (methods.THIRD,) if name == "fem" else (methods.THIRD, CLOSEST)
     slow = name == "fft-em" and contrast in SLOW
     return coarse.items() <= case.items() and case["fraction"] in fractions and not slow
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def run(name, fraction, contrast, method, **knobs):
@@ -108,11 +103,6 @@ def _exact(fraction, contrast):
     from references.exact import lattice
 
     return lattice.conductivity("sc", contrast, fraction)
-
-
-def warm_up(name, fraction, contrast, method, **knobs):
-    """Load the solver."""
-    methods.warm_up(method, **knobs)
 
 
 def claims(df):

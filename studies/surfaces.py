@@ -38,7 +38,7 @@ def _cases():
 
 
 CASES = list(_cases())
-PAPER = {}
+VALUES = True
 # Why claims on the stored rows fail.
 FAILS = {
     "10000 to 400000 particles: lowest order": (
@@ -58,11 +58,6 @@ def QUICK(case):
     return case["particles"] <= 10_000 and case["seed"] == 0
 
 
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
-
-
 def run(name, contrast, method, **knobs):
     """Solve and compare with the exact value; at contrast 1 also with the linear temperature."""
     scene = sphere_in_cube(contrast)
@@ -74,11 +69,6 @@ def run(name, contrast, method, **knobs):
         warmer, linear = field.samples.temperature - COLD, SLOPE * field.samples.points[:, 1]
         row["linear_error"] = float(abs(referee.value_error(warmer, linear, scale=SLOPE * EDGE)).max())
     return row
-
-
-def warm_up(name, contrast, **solver):
-    """Load the solver."""
-    methods.warm_up(**solver)
 
 
 def claims(df):

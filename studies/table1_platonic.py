@@ -51,6 +51,7 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 MODULES = {"platonic": "demheat.network.platonic"}
 
 
@@ -59,11 +60,6 @@ def QUICK(case):
     if case["part"] == "table":
         return f"s_{case['neighbours']}" in PAPER
     return case["particles"] == NUMBERS[0] and case["seed"] == 0
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def run(part, method, **case):
@@ -105,11 +101,6 @@ def packed(packing, particles, seed):
     if packing == "lsa":
         return grown(particles, radii=Uniform(0.075), seed=seed, pressure=1e6)
     return relaxed(particles, phi=PHI, radii=Uniform(0.075), seed=seed)
-
-
-def warm_up(part, **case):
-    """Load the solver; the packing, kept or made anew, is not part of what is compared."""
-    run(part, **case | ({} if part == "table" else {"packing": "relaxed", "particles": 1_000, "seed": 0}))
 
 
 def claims(df):

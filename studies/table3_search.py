@@ -30,6 +30,7 @@ PAPER = printed("fig18_fields")
 # Two by themselves, that are drawn again at each change.
 STARTS = (0, 2, *range(EACH, DRAWN, EACH), DRAWN)
 CASES = [{"first": FIRST + one, "drawn": next_ - one, "method": "fft"} for one, next_ in pairwise(STARTS)]
+VALUES = True
 MODULES = {"multipole": "references.multipole"}
 TIMEOUT = 600.0
 FAILS = {
@@ -47,11 +48,6 @@ LETTERS = tuple(POINTS)
 def QUICK(case):
     """The smallest block."""
     return case["first"] == FIRST
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def views(size=1.0):
@@ -110,12 +106,6 @@ def _given(scene):
 
 def _all(found):
     return np.logical_and.reduce([each.all(axis=1) for each in found.values()])
-
-
-def warm_up(first, drawn, method):
-    """Load both solvers."""
-    methods.warm_up("fft")
-    methods.warm_up("multipole")
 
 
 def claims(df):

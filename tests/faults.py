@@ -25,7 +25,6 @@ import subprocess
 import time
 
 CASES = [{"name": "row", "x": float(k)} for k in range(5)]
-PAPER = {}
 REPEATS = 1
 
 

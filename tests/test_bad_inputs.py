@@ -5,8 +5,6 @@ Each is refused before any work with a ValueError that names the argument. A new
 
 # ruff: noqa: E501 (a row of the table is a line)
 
-from __future__ import annotations
-
 import inspect
 from fractions import Fraction
 

@@ -1,7 +1,5 @@
 """Cubic arrays of spheres by Rayleigh's series, and coated spheres that their matrix does not notice."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

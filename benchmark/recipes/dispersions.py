@@ -1,7 +1,5 @@
 """Spheres at random, by multipoles; and bodies between bounds that are certain."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import partial

@@ -3,8 +3,6 @@
 Each module of recipes has `entries()`: pairs of a name and what makes its `Entry`, so that one scene may be made alone.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The image of 500^3 voxels that TauFactor published, by what it is found by: the file itself is not shipped."""
 
-from __future__ import annotations
-
 SHAPE, PAGES = (500, 500, 500), "TF-500x500x500-1x2x6-v3.tiff"
 # As the paper prints them; columns of the TIFF are x, rows y, pages z.
 SHARE, TORTUOSITY = 0.3, {"x": 1.3905, "y": 1.1513, "z": 4.2431}

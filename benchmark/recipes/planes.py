@@ -1,7 +1,5 @@
 """Layers, across and along, with surfaces that resist, and of tensors; and patterns of the plane with closed forms."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Heat in time by series, and the benchmarks T2, T3 and T4 of NAFEMS."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

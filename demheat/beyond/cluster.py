@@ -3,8 +3,6 @@
 Queue, scheduler, workers and dashboard are Dask's; here is only what a row needs of them.
 """
 
-from __future__ import annotations
-
 import asyncio
 import os
 import uuid

@@ -1,7 +1,5 @@
 """PETSc's conjugate gradients and multigrid, as all who solve with them set them up."""
 
-from __future__ import annotations
-
 # PETSc's own algebraic multigrid, by smoothed aggregates; other thresholds and aggregates take as much memory.
 DEFAULTS = {"pc_type": "gamg", "pc_gamg_type": "agg", "pc_gamg_agg_nsmooths": "1", "pc_gamg_threshold": "0.01"}
 PREFIX = "demheat_"

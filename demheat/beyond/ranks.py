@@ -1,7 +1,5 @@
 """Ranks of an MPI run: who they are, whether a solve fits where they run, and what each of its stages costs them."""
 
-from __future__ import annotations
-
 import ctypes
 import gc
 import os

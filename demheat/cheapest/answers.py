@@ -1,7 +1,5 @@
 """Answers of one method: the tensor with its intervals, refined until they are narrow enough."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

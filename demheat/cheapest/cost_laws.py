@@ -16,8 +16,6 @@ within the factors `error_within` and `cost_within`, and of scenes unlike those 
 for steady heat, on the machine of the study's rows; layers are exact with most methods.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 from functools import cache

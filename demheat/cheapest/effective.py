@@ -1,7 +1,5 @@
 """The conductivity tensor to an accuracy, by the method that gets there at least cost."""
 
-from __future__ import annotations
-
 import math
 import time
 import warnings

@@ -1,7 +1,5 @@
 """What has to be solved for the conductivity tensor of a body: as few loads as it has unlike axes, on its part."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property

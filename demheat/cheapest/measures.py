@@ -1,7 +1,5 @@
 """What laws of error and cost read off a scene: a few lengths and numbers, without solving anything."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

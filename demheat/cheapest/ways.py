@@ -1,7 +1,5 @@
 """Which methods can find a body's conductivity to an accuracy, and what that would cost: from the laws, unsolved."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Insulated cracks without thickness: discs and rectangles that links do not cross."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Inclusions that have come off from what they lie in."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

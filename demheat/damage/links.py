@@ -1,7 +1,5 @@
 """Links that are gone from a network."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.damage.inclusions import drawn

@@ -1,7 +1,5 @@
 """Steady conduction in a damaged body by the discrete element method."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 

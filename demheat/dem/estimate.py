@@ -1,7 +1,5 @@
 """What other runs tell of one: fewer particles how far it is off, few ones whether there is an answer at all."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

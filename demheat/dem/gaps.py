@@ -5,8 +5,6 @@ that of the same particles where what lies in the gaps conducts instead. Between
 pass, which is known to a part: the same particles with so much less of it tell what that is worth, either way.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """What is asked of `solve` and `evolve`: read and checked once, before any heavy work; and what memory it takes."""
 
-from __future__ import annotations
-
 import copy
 import warnings
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The discrete element method: a packing, its network of conductances, and the field they give."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 from functools import partial

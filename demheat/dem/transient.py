@@ -1,7 +1,5 @@
 """The discrete element method in time: a packing, its network of conductances, and fields while it warms up."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import partial
 

@@ -7,8 +7,6 @@ second process: if it cannot be started or ends early, all is compiled as it is 
 None is started where kernels are kept already, for one thread, or with DEMHEAT_WARM=0 in the environment.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import shutil

@@ -1,7 +1,5 @@
 """Cells of few shapes: slabs, laminates, one sphere, cubic arrays, a coated sphere; and the loads of all scenes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

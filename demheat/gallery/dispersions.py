@@ -1,7 +1,5 @@
 """Dispersions: spheres placed at random, one by one or by collisions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

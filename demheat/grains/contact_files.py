@@ -1,7 +1,5 @@
 """Contacts out of text dumps of LIGGGHTS and LAMMPS: `dump local` of `compute pair/gran/local` or `pair/local`."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is known of a bed of grains once it is solved: temperatures, the heat of each pair, and the conductivity."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import chain

@@ -22,8 +22,6 @@ In between the form is a smooth guess. An isothermal wall is a grain without cur
 of a grain and its mirror image.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

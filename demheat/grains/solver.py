@@ -1,7 +1,5 @@
 """Steady heat conduction through a bed of grains: contacts, gaps, and the temperatures at which each grain balances."""
 
-from __future__ import annotations
-
 import time
 import warnings
 from collections.abc import Mapping, Sequence

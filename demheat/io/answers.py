@@ -1,7 +1,5 @@
 """Answers of any program to scenes of the benchmark, as a file of JSON; its keys stand in `benchmark/README.md`."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

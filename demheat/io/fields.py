@@ -13,8 +13,6 @@ suffix  what is in it
 ======  ==================================================================================================
 """
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

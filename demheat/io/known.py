@@ -1,7 +1,5 @@
 """Scenes with known answers, as `benchmark/` has them: files of JSON that need no Python, read."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 from dataclasses import dataclass

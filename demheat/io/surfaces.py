@@ -1,7 +1,5 @@
 """Closed surfaces of triangles out of files: STL, PLY, OBJ, msh and what else meshio reads."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import warnings

@@ -5,8 +5,6 @@ number at a time in Python and leaves the number of tuples out of field data, wh
 gigabyte.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 TYPES = {"<f8": "Float64", "<i4": "Int32", "<i8": "Int64", "|u1": "UInt8"}

@@ -1,7 +1,5 @@
 """Words of errors about what is read: values cut short, and what may have been meant."""
 
-from __future__ import annotations
-
 import difflib
 from difflib import SequenceMatcher
 from pathlib import Path

@@ -5,8 +5,6 @@ Methods besides DEM are found where their folder has a module `ranks`.
 Exit status as that of `demheat`: 0; 1 if the solve was refused or failed; 2 for bad input, which one line names.
 """
 
-from __future__ import annotations
-
 import inspect
 import sys
 import traceback

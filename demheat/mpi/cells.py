@@ -5,8 +5,6 @@ sees of its neighbours ends in planes where cells are wrong; that no cell of its
 own cells fill the body, is checked.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """MPI and PETSc, found by import or refused in one line."""
 
-from __future__ import annotations
-
 from demheat.beyond import ranks
 
 

@@ -4,8 +4,6 @@ The finest level is that of one process, each rank's rows a block of it: the net
 second copy of the matrix. What all ranks' aggregates exchange is a matrix of PETSc's, on an eighth of the unknowns.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

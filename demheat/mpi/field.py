@@ -1,7 +1,5 @@
 """The Field of all ranks: sums over all, and parts that stay where they are until all ranks ask for them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """One number for each unknown of all ranks, and the temperatures of particles that a rank sees of others."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.mpi.slabs import NOBODY, Slabs, found_at

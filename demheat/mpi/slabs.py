@@ -1,7 +1,5 @@
 """The body cut into slabs, one for each rank, with a layer of its neighbours' particles, found by their places."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

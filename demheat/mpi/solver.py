@@ -1,7 +1,5 @@
 """A scene solved by all ranks together: packing, cells, equations, field, each rank its slab."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 

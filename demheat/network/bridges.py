@@ -5,8 +5,6 @@ the better those conduct, and hardly less with more particles: they carry what t
 carry too little, and what the answer is if the matrix lies in their place tells by how much at most.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

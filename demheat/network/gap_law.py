@@ -1,7 +1,5 @@
 """What a medium between two bodies conducts where they nearly touch, or around their contact, in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.special import xlogy, zeta
 

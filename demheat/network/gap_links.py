@@ -9,8 +9,6 @@ area.
 Between surfaces that are parallel, along a line at least, facets between the bodies fill the gap: each has its own way.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

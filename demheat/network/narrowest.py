@@ -1,7 +1,5 @@
 """The narrowest place between two surfaces, and how the gap widens around it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Packings of boxes of one shape, each made once and kept on disk."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Sequence
 

@@ -5,8 +5,6 @@ random sequential addition, one sphere after the other where it finds room. Half
 taken off every wall, while the spheres are placed.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Sequence

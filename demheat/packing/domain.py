@@ -1,7 +1,5 @@
 """Domains cut out of larger packings, and large packings by repeating a periodic one."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Callable, Sequence

@@ -1,7 +1,5 @@
 """The one gate for packings: what is made or changed by hand is looked at before kernels, which believe it, are."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What takes long to make, kept on disk: packings by all that they depend on."""
 
-from __future__ import annotations
-
 import hashlib
 import importlib.util
 import json

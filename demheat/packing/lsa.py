@@ -4,8 +4,6 @@ Source: B. D. Lubachevsky, F. H. Stillinger, J. Stat. Phys. 60 (1990) 561. All s
 and all radii grow in proportion.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Callable, Sequence

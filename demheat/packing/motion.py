@@ -4,8 +4,6 @@ The unit of length is the mean radius of the start, that of velocity the thermal
 component); all spheres have mass 1.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

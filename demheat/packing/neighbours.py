@@ -1,7 +1,5 @@
 """Near neighbours and contact networks of a packing, as compressed rows."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy import sparse
 

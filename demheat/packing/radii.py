@@ -1,7 +1,5 @@
 """Radius distributions: small frozen objects that draw radii of mean 1."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 from dataclasses import dataclass

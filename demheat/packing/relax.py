@@ -4,8 +4,6 @@ The minimiser is FIRE (Bitzek et al., Phys. Rev. Lett. 97 (2006) 170201) with sy
 in units of the mean radius; stiffness is 1.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

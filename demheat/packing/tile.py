@@ -4,8 +4,6 @@ Tiles come with the package (`demheat.packing.tile_recipe` made them) and know n
 quadrature rule know nothing of what they integrate. Their particles are equal, each in the centroid of its cell.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 from collections.abc import Callable

@@ -5,8 +5,6 @@ Equal particles are relaxed in a periodic cube, then moved into the centroids of
 are off centre. What that gains over relaxed packings is told in docs/decisions/tile.md.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

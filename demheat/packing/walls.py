@@ -1,7 +1,5 @@
 """How far the spheres of a packing lie from its walls."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.packing.base import Packing

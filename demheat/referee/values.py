@@ -3,8 +3,6 @@
 Values may be single numbers, arrays or columns of a data frame; what is elementwise returns the same kind.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

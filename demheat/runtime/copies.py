@@ -4,8 +4,6 @@ The first process computes nothing; it loads, and forks for each command, which 
 compiles, allocates and keeps ends with it.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import select

@@ -4,8 +4,6 @@ Nothing is killed. Between two looks is a block of compiled loops, an iteration 
 `docs/decisions/threads.md`.
 """
 
-from __future__ import annotations
-
 import time
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar

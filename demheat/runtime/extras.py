@@ -1,7 +1,5 @@
 """Libraries that one method or one kind of file needs: where one is missing, a sentence says which extra brings it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec

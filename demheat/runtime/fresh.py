@@ -1,7 +1,5 @@
 """A command in a process of its own, which ends with all that it started: at its time limit, or with its parent."""
 
-from __future__ import annotations
-
 import ctypes
 import json
 import os

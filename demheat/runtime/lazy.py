@@ -1,7 +1,5 @@
 """Names of a package that load with their first use: what is heavy does not load before it is asked for."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module

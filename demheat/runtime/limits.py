@@ -4,8 +4,6 @@ Estimates are of the least that is needed, so that nothing is refused that would
 too much.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Which machine this is: what it computes with, and a name that tells it from others without giving it away."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import platform

@@ -1,7 +1,5 @@
 """Names of files as users give them, files written whole or not at all, and folders in which one writes at a time."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 import threading

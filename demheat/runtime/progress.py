@@ -7,8 +7,6 @@ The environment variable DEMHEAT_PROGRESS=0 silences the terminal.
 Neither tqdm nor rich does this: they say nothing of a stage that is silent itself, or begin at once.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import threading

@@ -3,8 +3,6 @@
 Source: Haddad et al. 2021, eqs. 22-23.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

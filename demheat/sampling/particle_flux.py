@@ -3,8 +3,6 @@
 Source: Haddad et al. 2021, eq. 20.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.network.base import link_distances, wall_normals

@@ -3,8 +3,6 @@
 Each is a table: what every monomial x^a y^b z^c counts in each of them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 A scene knows nothing of budgets: `demheat.runtime.deadline` listens.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 _listeners: list[Callable[[str], None]] = []

@@ -3,8 +3,6 @@
 Scenes and packings know their domain by its name alone; what follows from the name is here.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

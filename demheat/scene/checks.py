@@ -1,7 +1,5 @@
 """What a scene is checked for as it is made: inclusions and where they lie, body, load, sources, initial state."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

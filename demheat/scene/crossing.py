@@ -1,7 +1,5 @@
 """When moving sources meet a body."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -11,8 +11,6 @@ The edge of a box or the rim of a cylinder alone has a power from 2/3 on, so tha
 power 4/3 at contrasts far from 1. An inclined plane makes wedges with a wall and its image, with powers from 1/2 on.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene.shapes.base import BESIDE

@@ -1,7 +1,5 @@
 """What is handed out: a dict and arrays that refuse to be changed, and small tables for notebooks."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from html import escape
 

@@ -1,7 +1,5 @@
 """Functions that users give in a scene, called in one place: with copies, and errors that say where they arose."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

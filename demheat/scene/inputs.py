@@ -1,7 +1,5 @@
 """Numbers as users type them: cast, or refused with one line that names argument, value and what would be valid."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from numbers import Integral, Real

@@ -4,8 +4,6 @@ At ten times the conductivity a missed gap between two spheres was found to cost
 times all of it, since heat takes a short cut.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 # Contrast to what is around, either way, from which on a gap matters.

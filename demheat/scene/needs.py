@@ -1,7 +1,5 @@
 """What a method may need of a scene, and what it is told that the scene has instead: behind `Scene.require`."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -16,8 +16,6 @@ other inclusions, however narrow or hot, enters: what the field is in S is bound
 sphere changes no more than the ball about it would, as K rises with the conductivity at every point.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple

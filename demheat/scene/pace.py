@@ -3,8 +3,6 @@
 An estimated error sees a load at the stages of a step only: a pulse between two of them is not in it.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

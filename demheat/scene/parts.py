@@ -1,7 +1,5 @@
 """What acts on a scene: fluxes, convection and radiation at walls, heat sources; each checked as it is made."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

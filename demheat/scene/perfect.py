@@ -4,8 +4,6 @@ What touches without a resistance has one temperature, however small the contact
 across a gap rises without bound as it closes.
 """
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 
 import numpy as np

@@ -4,8 +4,6 @@ A surface belongs to its shape and parts it from what the shape was painted on. 
 on each other, as two layers that touch or a layer that ends where the one around it does, heat crosses all of them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

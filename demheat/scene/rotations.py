@@ -1,7 +1,5 @@
 """Rotations as users give them: vectors, matrices, scipy's."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene.inputs import reals, shown

@@ -1,7 +1,5 @@
 """Conductivities that differ with direction: symmetric positive definite tensors, as users give them."""
 
-from __future__ import annotations
-
 import math
 from numbers import Real
 

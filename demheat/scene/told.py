@@ -1,7 +1,5 @@
 """What is most asked of a scene, in words."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 

@@ -1,7 +1,5 @@
 """A scene with its axes in another order: a turn by right angles, or a mirror."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

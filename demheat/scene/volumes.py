@@ -1,7 +1,5 @@
 """How much of a body each of its phases is, and how thin: inclusions, and the coats that others within them leave."""
 
-from __future__ import annotations
-
 import numpy as np
 
 # Points at which phases are asked for where volumes have no closed form, and steps of an even sequence of them (Roberts

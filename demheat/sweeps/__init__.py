@@ -1,7 +1,5 @@
 """Sweeps: one function over many cases, here or on a cluster, with one row for each."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from os import PathLike
 from typing import Any

@@ -1,7 +1,5 @@
 """Cases of a sweep: a grid or a list, checked."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable, Mapping
 

@@ -1,7 +1,5 @@
 """Rows of a sweep in a CSV file, written whole after each row: a sweep that is stopped goes on from there."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """One row of a sweep: the case, what the function returned, what that cost and where it was made."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import singledispatch
 from numbers import Real

@@ -1,7 +1,5 @@
 """One case in a fresh process of a worker: its cost is its own, a crash is an error like others, a limit ends it."""
 
-from __future__ import annotations
-
 import json
 import os
 import sys

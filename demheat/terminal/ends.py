@@ -1,7 +1,5 @@
 """How a command ends: a closed pipe, a full disk, Ctrl-C, and errors as one line that names the file."""
 
-from __future__ import annotations
-
 import errno
 import os
 import sys

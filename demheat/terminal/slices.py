@@ -1,7 +1,5 @@
 """Planes through a body: a grid of points on one, and what any Field has there, ready for a picture."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

@@ -7,8 +7,6 @@ discrete fractions, or a correct method may look wrong.
 The form that all bounds share is in `mixing`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

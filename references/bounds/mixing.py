@@ -5,8 +5,6 @@ p1 k2, k(X) = <k> - p1 p2 (k2 - k1)^2 / (<k~> + X) = (k1 k2 + X <k>) / (<k~> + X
 X = 2 min(k1, k2) and 2 max(k1, k2) Hashin and Shtrikman. The last form loses no digits and has its limits.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene.inputs import reals

@@ -1,7 +1,5 @@
 """The conductivity of a scene by one of the formulas of isotropic dispersions."""
 
-from __future__ import annotations
-
 from demheat.scene import Scene, Sphere, check_scene
 from demheat.scene.inputs import chosen
 from demheat.scene.volumes import fractions

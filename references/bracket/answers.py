@@ -1,7 +1,5 @@
 """Two values between which a conductivity certainly lies, or a tensor of them; of meshes and of voxels alike."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

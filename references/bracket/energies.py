@@ -1,7 +1,5 @@
 """What temperatures or fluxes on a mesh prove: energies, with what rounding and quadrature may hide."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from references.bracket.fluxes import blocks, masses

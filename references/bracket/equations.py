@@ -1,7 +1,5 @@
 """A balanced flux on a mesh: temperatures on faces solved for, moments read off, and what they leave unbalanced."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

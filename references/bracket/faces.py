@@ -1,7 +1,5 @@
 """Faces of a mesh of tetrahedra: which elements share one, and which of them lie between two materials."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -6,8 +6,6 @@ unknowns are temperatures on the faces, the multipliers of the flux's continuity
 balanced flux of least energy (Brezzi, Douglas and Marini 1985; hybrid as by Arnold and Brezzi 1985).
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A scene's conductivity between two bounds that are certain."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

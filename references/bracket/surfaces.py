@@ -7,8 +7,6 @@ of its Bernstein coefficients: patches are pushed along the sphere's radius unti
 inside the mesh's surfaces, or these inside the balls, for the elements fill the box without overlap.
 """
 
-from __future__ import annotations
-
 from itertools import combinations_with_replacement
 from math import factorial, prod
 from typing import NamedTuple

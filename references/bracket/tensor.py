@@ -1,7 +1,5 @@
 """A periodic cell's conductivity tensor between two that are certain, by three loads on one mesh."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

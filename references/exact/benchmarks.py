@@ -4,8 +4,6 @@ Source: The Standard NAFEMS Benchmarks (1990), T2 (a bar that radiates at its en
 and T4 (a plate that convects at two edges); by a quartic, by separation of variables, by roots of a Biot number.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -10,8 +10,6 @@ An insulated disc alone takes 8/3 a^3 of volume off the mean gradient (Sneddon, 
 w = 4/pi sqrt(a^2 - r^2). Lengths are in units of the side L.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

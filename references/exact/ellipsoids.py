@@ -6,8 +6,6 @@ Source: Landau and Lifshitz, Electrodynamics of Continuous Media, sections 4 and
 Conductivities are in units of the matrix; the axes of a `frame` are those of the ellipsoid, its rows in the scene.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

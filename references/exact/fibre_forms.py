@@ -3,8 +3,6 @@
 Across them it is that of `fibres` and `fibres_field`; along them the gradient is the mean one everywhere.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

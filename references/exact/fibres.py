@@ -16,8 +16,6 @@ pi over the area of the cell where the mean gradient is that of the cell. Then k
 Lengths are in units of the distance of neighbours, conductivities in units of the matrix.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

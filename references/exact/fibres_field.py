@@ -7,8 +7,6 @@ where l is 1 more than a multiple of the array's turns and -1 elsewhere: h turns
 Lengths are in distances of neighbours, conductivities in units of the matrix; the first neighbour lies along x.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

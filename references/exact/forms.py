@@ -3,8 +3,6 @@
 A form takes a scene and gives a `Closed`, or None if the scene is not of its kind.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from functools import lru_cache

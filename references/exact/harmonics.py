@@ -4,8 +4,6 @@ Racah's normalisation: R_l^m = sqrt((l-m)!/(l+m)!) r^l P_l^m(cos t) exp(i m p), 
 irregular I_l^m = R_l^m / r^(2l+1). Lengths of this module are in units of the cube's edge.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import NamedTuple

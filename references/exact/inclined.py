@@ -4,8 +4,6 @@ Source: Milton, The Theory of Composites (2002), section 9.2. Along the layers a
 them all fluxes are.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 

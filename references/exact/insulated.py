@@ -1,7 +1,5 @@
 """Spheres apart in a matrix of no conductivity: no heat passes, and each has one temperature."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene import Sphere

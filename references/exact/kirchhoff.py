@@ -6,8 +6,6 @@ the theta of their temperatures. Where they differ theta jumps at interfaces; in
 other the flux is still one number, the root of the temperature that it leaves at the end.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -9,8 +9,6 @@ Rayleigh's identity says that A is what the mean gradient and all other spheres 
 Lengths are in units of the cube's edge, conductivities in units of the matrix.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

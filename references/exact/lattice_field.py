@@ -5,8 +5,6 @@ own irregular series, and only the far rest is expanded about the origin: a sing
 converge in the corners of the cell.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from references.exact.harmonics import CIRCUMRADIUS, SITES, lattice_sums, series

@@ -4,8 +4,6 @@ With the normal n and c = n.K g, the same in every layer, the gradient across is
 gradient along; the mean over the layers, and what their surfaces resist, fix c.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene import Layer

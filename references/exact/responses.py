@@ -6,8 +6,6 @@ rises at unit rate. With z = (distance travelled) / (2 sqrt(a t)) its wave is i^
 face of known temperature turns its sign, one at a face of known flux does not.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

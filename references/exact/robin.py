@@ -5,8 +5,6 @@ tan p = B0 / m at the near face meet the far one where m - p - atan(B1 / m) is a
 infinite Biot number, one with a flux 0.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ lose the radius) and of Terreros et al. 2013, eq. 8 (as printed its coordinate s
 are those of Carslaw and Jaeger, see `responses`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Exact solutions, for the scenes that have one."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.error import known

@@ -3,8 +3,6 @@
 Both are across rods that are endless along z, and isotropic there; conductivities are over that of one phase.
 """
 
-from __future__ import annotations
-
 import math
 
 

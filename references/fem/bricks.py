@@ -1,7 +1,5 @@
 """Structured hexahedra: a grid of bricks with trilinear temperatures, assembled diagonal by diagonal."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import partial

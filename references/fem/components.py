@@ -1,7 +1,5 @@
 """What pores leave of a mesh: bodies of conducting elements, and those that no heat can pass in a steady state."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Spheres that no mesh fits around, told before there is one."""
 
-from __future__ import annotations
-
 from demheat.scene import Scene
 from demheat.scene.inputs import one_line
 from references.mesh.sizes import wanted_sizes

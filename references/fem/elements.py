@@ -1,7 +1,5 @@
 """Linear and quadratic tetrahedra: shape functions and quadrature by scikit-fem, integrals in blocks of elements."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix
 from skfem.element import ElementTetP1, ElementTetP2, ElementTriP1, ElementTriP2

@@ -8,8 +8,6 @@ again for what A (y + z) + K z leaves: a round leaves of the error about as much
 As z is kept apart it has all of its digits, of which a sum at a contrast of 1e12 would leave four.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ join where they share a node, so a heat path may lead over an edge or a corner. 
 are left out of the equations, see `components`.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Solve (M / tau + K) x = b again and again, for steps that stay or change: what is set up is used while it serves."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

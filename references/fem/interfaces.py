@@ -3,8 +3,6 @@
 With [T] the jump across the interface its share of the weak form is the integral of [T] [v] / R.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix
 from skfem.quadrature import get_quadrature

@@ -1,7 +1,5 @@
 """What drives a transient at a time: temperatures and fluxes of walls, heat sources."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

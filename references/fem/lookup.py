@@ -1,7 +1,5 @@
 """Values of a finite element solution at any point: which element, where in it, what there."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

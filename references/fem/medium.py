@@ -4,8 +4,6 @@ k is a number for each element, S a tensor of its phase, the identity where it c
 `demheat.scene.Dependence`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from references.fem.elements import shapes

@@ -1,7 +1,5 @@
 """Conjugate gradients with a multigrid preconditioner: quadratic to linear elements, then smoothed aggregation."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

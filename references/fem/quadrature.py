@@ -1,7 +1,5 @@
 """Quadrature on the reference tetrahedron with positive weights, of any degree."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

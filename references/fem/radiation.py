@@ -1,7 +1,5 @@
 """Steady radiation: Newton's method on the nodes, each round from the last one's temperatures."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene import STEFAN_BOLTZMANN, Radiation

@@ -5,8 +5,6 @@ rank makes the mesh and hands it on. Each assembles the elements that touch its 
 PETSc solves.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 

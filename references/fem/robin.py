@@ -4,8 +4,6 @@ Convection adds a mass matrix of the wall, h N_i N_j, to the stiffness and h T_a
 condition is in any textbook); radiation is linearised at the points of the same quadrature (Newton).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

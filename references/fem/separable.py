@@ -4,8 +4,6 @@ Source: Lynch, Rice and Thomas, Numer. Math. 6 (1964) 185: M / tau + K is a sum 
 M = Mx My Mz and K = Kx My Mz + Mx Ky Mz + Mx My Kz; vectors V with V'MV = 1 and V'KV diagonal diagonalise all of it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.linalg import eigh
 

@@ -1,7 +1,5 @@
 """Nodes of a mesh shared out to ranks by slabs: who has which rows, and what assembles them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Steady conduction by finite elements."""
 
-from __future__ import annotations
-
 import warnings
 from functools import partial
 

@@ -4,8 +4,6 @@ Shape functions sum to one everywhere, so the heat of the nodes is that of the p
 as the points move, what a node gets changes without jumps.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import NamedTuple

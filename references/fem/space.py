@@ -1,7 +1,5 @@
 """What a transient needs of a mesh, whatever its elements; here of tetrahedra."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial

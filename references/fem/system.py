@@ -6,8 +6,6 @@ whose temperature needs no solving, see `components`. Afterwards nodes in pores 
 may reach past an interface: that in the limit of a vanishing conductivity.
 """
 
-from __future__ import annotations
-
 import time
 from typing import NamedTuple
 

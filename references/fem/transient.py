@@ -1,7 +1,5 @@
 """Transient conduction by finite elements: tetrahedra or bricks in space, TR-BDF2 in time."""
 
-from __future__ import annotations
-
 import time as clock
 from collections.abc import Iterator, Sequence
 from functools import partial

@@ -4,8 +4,6 @@ Source: Bank et al., IEEE Trans. Electron Devices 32 (1985) 1992; as a Runge-Kut
 explicit and equal to the last of the step before: Hosea and Shampine, Appl. Numer. Math. 20 (1996) 21.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

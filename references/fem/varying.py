@@ -4,8 +4,6 @@ Picard's iteration. Of a homogeneous body between two walls it takes off a part 
 in each round.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from references.fem.multigrid import renewed, solve_free

@@ -12,8 +12,6 @@ flux.  The first alone stops on a plateau at contrast 1e6, the second alone too 
 are then checked once more from the recomputed residual.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

@@ -3,8 +3,6 @@
 Kernels work on the planes low <= i < high of the first axis, or on columns of modes; see `hexahedron_kernels`.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

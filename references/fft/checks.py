@@ -1,7 +1,5 @@
 """What the FFT solvers are asked for, checked before anything is painted."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How edges of bodies lie in voxels: what laminates miss beside them goes with that, by chance from grid to grid."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene.edges import SMOOTH, edge_order

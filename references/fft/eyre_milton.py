@@ -12,8 +12,6 @@ In a box with two isothermal and four insulated walls the mirrored periodic fiel
 same algebra runs on the box itself.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ often; sums are kept per plane, so the bits do not depend on the threads.  Array
 last axis.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numba

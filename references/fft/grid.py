@@ -1,7 +1,5 @@
 """A solution on voxels, and what it is of."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ there are up to the third degree.  They are fitted by weighted least squares to 
 phase that are nearest to it and joined to it, on its side of every interface.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

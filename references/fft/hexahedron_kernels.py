@@ -5,8 +5,6 @@ summed in one order whatever the chunk, and sums are kept per plane, so the bits
 Arrays named `work` may be padded at the end of their last axis.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numba

@@ -4,8 +4,6 @@ By harmonic polynomials through the voxels around (`references.fft.harmonic`), a
 few, or not known well enough.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import product
 from typing import NamedTuple

@@ -3,8 +3,6 @@
 See `hexahedron_kernels` for what `low`, `high` and `work` are.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Memory that a solve on voxels is expected to take, told before it begins."""
 
-from __future__ import annotations
-
 # Fields of one number a voxel that are there at the peak, by scheme and rule: temperature, residual, direction and the
 # transform's own; conductivities of three links besides; three of the flux and three of the transform.
 FIELDS = {("cg", "plain"): 4, ("cg", "laminate"): 4, ("cg", "links"): 7}

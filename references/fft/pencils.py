@@ -5,8 +5,6 @@ alone; then all exchange, and transform along the first. What is longer in the f
 is, the rest is done in place.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from time import perf_counter

@@ -4,8 +4,6 @@ That is a large number, not one unknown for each body: iterations go with its lo
 contrast of 100. What it lacks of infinity, 1e-8, is below what voxels lack.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene import Scene

@@ -1,7 +1,5 @@
 """What the two schemes share: the scaled problem they are given and the solution they hand back."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from time import perf_counter

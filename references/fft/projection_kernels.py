@@ -6,8 +6,6 @@ first axis, and are called once per thread or more often; sums are kept per colu
 on the threads.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numba

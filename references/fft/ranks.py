@@ -3,8 +3,6 @@
 `mpiexec -n 2 python -m demheat.mpi scene.toml --method fft --voxels 512`; or, on every rank alike, `solve`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cache, partial

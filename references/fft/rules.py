@@ -1,7 +1,5 @@
 """Rules for voxels that an interface cuts: which one suits a scene, and what each does not see."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

@@ -4,8 +4,6 @@ The kernels are those of a whole grid; sums over planes are gathered from all ra
 computed differs from the whole by the rounding of the transforms alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Steady conduction on voxels by either of the two schemes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Numba kernels that take columns of modes to a buffer, where each lies in one piece, and put them back."""
 
-from __future__ import annotations
-
 import numba
 
 import demheat.runtime.compiled  # noqa: F401 (where compiled kernels are kept)

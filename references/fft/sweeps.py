@@ -6,8 +6,6 @@ buffer that fits the cache, transforms them, lets a kernel change them, transfor
 kernel between two sweeps over planes, and one between the two transforms of a column, then touch memory no more.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from time import perf_counter
 from typing import NamedTuple

@@ -4,8 +4,6 @@ Plans of large grids are measured, and their wisdom is kept in the folder of the
 else in the user's cache folder, so each size is measured once.
 """
 
-from __future__ import annotations
-
 import os
 import tempfile
 import threading

@@ -1,7 +1,5 @@
 """Units and axes around the schemes: the scaled problem of a scene on a grid, and its answers as the user has them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

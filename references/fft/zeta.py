@@ -9,8 +9,6 @@ normal n, which adds (1 - v) n n to Gamma chi on the inclusions' side: summed ov
 v (1 - v)^2. Frequencies are those of the rotated scheme of Willot, C. R. Mecanique 343 (2015) 232, tan(pi k/N).
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Sequence

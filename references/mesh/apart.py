@@ -6,8 +6,6 @@ for each mesh and keeps nothing of it. It is ended with whatever ends the wait f
 a fork of the parent starts its own.
 """
 
-from __future__ import annotations
-
 import atexit
 import os
 import pickle

@@ -6,8 +6,6 @@ reach gmsh, whose tolerances are absolute. Where a shape has no volume of OpenCA
 (`references.mesh.lattice`).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Arrays of a mesh: faces, periodic twins, Jacobians, volumes and what is checked. No mesher."""
 
-from __future__ import annotations
-
 from itertools import combinations, product
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ halved there, one after the other in an order of their own, by which neighbours 
 node or an edge is done to its periodic twins.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Meshes and fields for ParaView (the only home of meshio)."""
 
-from __future__ import annotations
-
 from demheat.runtime.extras import extra
 
 

@@ -1,7 +1,5 @@
 """gmsh in a session of its own: loaded, set up, tried at several sizes, its tetrahedra as arrays."""
 
-from __future__ import annotations
-
 import ctypes
 import importlib
 import time

@@ -4,8 +4,6 @@ The lattice fills the box and repeats with it, so periodic faces match by themse
 nothing else: level sets, unions in pieces and meshes are all the same here. Second-order nodes are put onto surfaces.
 """
 
-from __future__ import annotations
-
 import time
 from functools import partial
 

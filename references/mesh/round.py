@@ -1,7 +1,5 @@
 """Meshes of round bodies: the cylinder and the sphere inscribed in the box, by gmsh, with curved tetrahedra."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

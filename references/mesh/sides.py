@@ -4,8 +4,6 @@ Elements are on one side of such interfaces if those around their phases are the
 node has a copy for each side of the elements around it, and periodic twins are those of one side.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Numba kernel of the size of elements at a point, where many features ask for small ones: those near are looked up."""
 
-from __future__ import annotations
-
 import math
 
 import numba

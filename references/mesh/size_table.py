@@ -1,7 +1,5 @@
 """Sizes of elements looked up: what asks for small ones, sorted into cells of the box, for gmsh to ask everywhere."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from references.mesh.sizes import GROWTH, Sizes

@@ -1,7 +1,5 @@
 """How fine a mesh must be where: small spheres, thin layers and shells, narrow gaps. Geometry only, no mesher."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise, product
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """How fine a mesh must be beside the surfaces of shapes other than spheres and layers, by samples of them."""
 
-from __future__ import annotations
-
 from functools import partial
 from itertools import product
 

@@ -5,8 +5,6 @@ its corner, leaves parts of the surface that cannot be meshed; gmsh then refines
 twins stay as they are.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

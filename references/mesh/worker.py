@@ -4,8 +4,6 @@ Every fork begins where all others began, so that a mesh does not depend on what
 does to its process ends with it. A file that is run, of the standard library alone.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import pickle

@@ -5,8 +5,6 @@ with the same temperature, across an isothermal one with its difference from the
 an eighth at most, of a periodic cell of its mirror images under a mean gradient.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import product
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Spheres apart in a matrix of no conductivity: the answer needs no multipoles."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

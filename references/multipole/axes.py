@@ -8,8 +8,6 @@ same exchange again: the exchange is one fixed matrix per degree, its own invers
 Harmonics are in Racah's normalisation, entry (l, m >= 0) of a table stands at l (l + 1)/2 + m.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import NamedTuple
 

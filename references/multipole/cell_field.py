@@ -1,7 +1,5 @@
 """Temperature and slope outside the spheres by cells: near spheres one by one, all others by the cell's own series."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from references.multipole import field_kernels as kernels

@@ -5,8 +5,6 @@ parts, as in `translations`, times radius^(l+1) where they are sent and radius^-
 with the spheres of a fixed block, so that no bit depends on how many threads share the blocks.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Spheres sorted into the equal cells of a regular grid, for the fast multipole method."""
 
-from __future__ import annotations
-
 from itertools import product
 from typing import NamedTuple
 

@@ -6,8 +6,6 @@ degrees up to an order; all others exchange a few degrees. What is left falls by
 however narrow the gaps: sources near one contact of a sphere are no nearer to the next one than the contacts are.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

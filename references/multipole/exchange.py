@@ -1,7 +1,5 @@
 """Which way spheres exchange their multipoles: all pairs for few of them, else by cells."""
 
-from __future__ import annotations
-
 from references.multipole.fast import PRODUCTS, FastMultipole, plan
 from references.multipole.translations import SECONDS, translation
 

@@ -4,8 +4,6 @@ The sums are Ewald's of `sums`. A near image adds -P(L+1/2, eta r^2) I_L^M inste
 off afterwards would leave nothing but rounding at high degrees.
 """
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -7,8 +7,6 @@ Fourier transforms: no tree is needed. Libraries of the fast multipole method kn
 of any degree, and few know periodic cells.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

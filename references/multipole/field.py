@@ -5,8 +5,6 @@ summed by Ewald's splitting: screened images one by one, the smooth rest by wave
 Many spheres are summed by cells instead, for the waves go with their number: see `cell_field`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

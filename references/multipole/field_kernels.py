@@ -4,8 +4,6 @@ Harmonics and their tables are those of `translation_kernels`. Spheres and Ewald
 `translations.Spheres` and `sums.Splitting`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -4,8 +4,6 @@ The turns and tables are those of `axes`. A table of one degree or of all stands
 parts apart; what moves along z stands order by order, row `column(m, order) + l`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numba

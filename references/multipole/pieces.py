@@ -1,7 +1,5 @@
 """Compiled loops in pieces of well under a second, between which the interpreter hears an interrupt."""
 
-from __future__ import annotations
-
 # Seconds that a piece takes, about.
 PIECE = 0.3
 

@@ -9,8 +9,6 @@ scene becomes spheres in `arrangement`, their mirror images in walls included; w
 zeta_2 in `third_order`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

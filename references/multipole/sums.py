@@ -11,8 +11,6 @@ Harmonics in Racah's normalisation, as in `references.exact.harmonics`; entry (L
 L (L + 1)/2 + M.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -9,8 +9,6 @@ of others only the others' b are unknown.
 Tables and units are those of `translations`.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

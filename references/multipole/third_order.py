@@ -1,7 +1,5 @@
 """Milton's third-order parameter of dispersions, from one translation of unit dipoles."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ and Shortley's sign: translations of these are plain sums without binomials (Ept
 (1995) 865). Entry (l, m >= 0) of a table stands at l (l + 1)/2 + m; -m follows from f_l^-m = (-1)^m conj(f_l^m).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from references.multipole.lane_kernels import compiled, inner

@@ -4,8 +4,6 @@ Tables are real, (2, spheres, entries): real and imaginary parts, Racah's normal
 l (l + 1)/2 + m; b and c as in `system`. Conductivities are in units of the matrix; lengths in any one unit.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """How many degrees are enough: solutions of rising order, and what their last changes say of the rest."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Harmonics turned so that a direction becomes z, and back: see `axes`."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -6,8 +6,6 @@ l' at the other: positive, and with the degree as smooth as what it acts on. So 
 higher ones polynomials in log l on octaves: spheres that touch take no more of them than those far apart.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Numba kernel of the convolution of cells' multipoles with what one cell makes at another, wave by wave."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from references.multipole.lane_kernels import compiled, inner

@@ -4,8 +4,6 @@ Voxels are joined by faces that both sides' conductivities let pass, links by th
 insulating layer has none along its normal, and blocks.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Voxels that surfaces cut: how much they hold of each phase, and what that conducts as a laminate."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from references.voxels import kernels

@@ -8,8 +8,6 @@ constant in each voxel; Sherman and Morrison).  A film smeared by its own area w
 The sum of |n.b| over all voxels is the surface of what the corners see, whose steps the normals smooth.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

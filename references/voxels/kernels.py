@@ -1,7 +1,5 @@
 """Numba kernels of the voxelisation: which voxels a sphere fills, cuts or leaves."""
 
-from __future__ import annotations
-
 import math
 
 import numba

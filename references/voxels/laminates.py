@@ -7,8 +7,6 @@ principal directions of n n over the surface inside the voxel, by their shares: 
 that is the formula of `references.voxels.paint`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 # Axes of the entries of a tensor, as `references.voxels.paint` has them.

@@ -1,7 +1,5 @@
 """Links between neighbouring voxel centres, cut exactly where they cross a surface: harmonic means along each link."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.runtime.progress import stage

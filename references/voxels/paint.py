@@ -7,8 +7,6 @@ Gelebart and Ouaki, J. Comput. Phys. 294 (2015) 90-95, and Kabel, Merkert and Sc
 Engrg. 294 (2015) 168-188.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Some planes of a grid across its first axis: what reaches them, and what is left of the rest."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene import Shape

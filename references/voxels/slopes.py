@@ -5,8 +5,6 @@ other the other's, so the voxel conducts sum(f k s^2) over the square of their m
 that a body of good conductors behind a film would conduct where only its outside has a slope.
 """
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

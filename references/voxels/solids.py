@@ -5,8 +5,6 @@ What that lacks of a bent surface is its sagitta there, of second order in the s
 the shape is convex: where the volume is known, the surface is moved by the one small length that makes it right.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Spheres of a scene as arrays, all images of them, in pieces that kernels go through within a part of a second."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import groupby, product
 from typing import NamedTuple

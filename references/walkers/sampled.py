@@ -4,8 +4,6 @@ The grid says where to look, not where the surface is: that is found by what the
 slope of the nodes' distances. Farther away from it a lower bound of the distance is all that walkers need.
 """
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A scene's conductivity along its load by walkers."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

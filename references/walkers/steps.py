@@ -8,8 +8,6 @@ Beside its own way each walker adds up two others that have no drift, for `refer
 and the leaps divided by the conductivity where they are made.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

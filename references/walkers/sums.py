@@ -8,8 +8,6 @@ walker is a martingale that differs from X by less than a period, and its mean p
 R as the mean gradient. Where a phase does not conduct, its part in the mean gradient is not known, and R is left out.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 # Standard errors of a change that is taken for none.

@@ -4,8 +4,6 @@ A periodic cell is repeated; a box between two held walls, insulated all round, 
 mirror images the temperature less the mean gradient is periodic, and a walker that crosses a wall goes on in an image.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from references.walkers.sampled import Sampled

@@ -19,7 +19,6 @@ REFINED = {"sphere": (6, 8, 12, 16, 32)}
 VOXELS = (8, 16, 32, 64, 128)  # along the cube's edge
 JUDGED = ("dem", "fft", "fem")
 MODULES = {"bracket": "references.bracket", "bracket-voxels": "references.bracket.voxels"}
-PAPER = {}
 # Of the sphere's narrowest bracket, %, with so many edges of elements beside the box and more.
 NARROW = {32: 0.004, 12: 0.1}
 TIMEOUT = 3600.0

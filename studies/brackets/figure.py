@@ -1,7 +1,5 @@
 """Widths of brackets against what they cost, and where the exact values are in them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.referee import value_error

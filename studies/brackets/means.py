@@ -1,7 +1,5 @@
 """Figures read off the rows of brackets."""
 
-from __future__ import annotations
-
 from studies.harness.methods import all_methods
 from studies.harness.pick import order
 

@@ -1,7 +1,5 @@
 """One bracket, or one method's answer, as a row."""
 
-from __future__ import annotations
-
 import math
 
 from references import bracket

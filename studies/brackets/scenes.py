@@ -1,7 +1,5 @@
 """Scenes with an exact conductivity: drawn by seed, and the three that are looked at closely."""
 
-from __future__ import annotations
-
 from demheat import gallery
 from demheat.scene import Material
 from references import exact, multipole

@@ -1,7 +1,5 @@
 """Lines of the table of brackets."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from studies.brackets.means import place

@@ -1,7 +1,5 @@
 """What a method answers, with what it says besides: a refusal is an answer too."""
 
-from __future__ import annotations
-
 import warnings
 
 REFUSALS = (ValueError, NotImplementedError, RuntimeError)

@@ -1,7 +1,5 @@
 """The homogeneous block of Haddad et al. (2021), sections 3 and on heat flux, and fields of contact networks in it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from demheat.conduction.steady import solve_steady

@@ -1,7 +1,5 @@
 """Our cell cutter beside Voro++ on one packing, and what two threads gain: figures for a row of a study."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Scenes with an exact solution, drawn by seed: for claims over many scenes that nothing was tuned on."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

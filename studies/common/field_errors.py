@@ -1,7 +1,5 @@
 """What the studies of fields look at: points, a plane, the method's own points; errors by the referee, in %."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

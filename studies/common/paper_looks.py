@@ -1,7 +1,5 @@
 """A panel with the errors of all variants of the paper's network."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.common.paper_variants import best_variant

@@ -12,8 +12,6 @@ fluxes in it are those with C_t = 1, and `ct_flux`, `ct_isothermal` or `ct_cell`
 Solved is with the last of these, as what is read between particles goes with their flux.
 """
 
-from __future__ import annotations
-
 NAME = "network"
 PACKINGS = ("lsa", "relaxed")
 WALLED = ("center", "surface")
@@ -133,14 +131,3 @@ def _size(scenes):
 def unscaled(field):
     """Conductivity with C_t = 1 over the matrix's."""
     return field.conductivity / (field.scene.matrix.conductivity * field.stats["calibration"])
-
-
-def warm_up(scenes, packing, held, particles, seed, replicas=1):
-    """Make and keep the packing, which is not part of what is compared; compile by a tiny one."""
-    from demheat.gallery import sphere_in_cube
-    from demheat.packing.relax import relax
-
-    packed(_size(scenes), packing, held, particles, seed, replicas)
-    scene = sphere_in_cube(2.0, periodic=held == "periodic")
-    # Fewer leave no bulk between walls.
-    solved({"": scene}, relax(3_000, size=scene.size, periodic=held == "periodic"), held)

@@ -1,7 +1,5 @@
 """What rows of the paper's network say: values and errors of each variant, with intervals, and which is the best."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

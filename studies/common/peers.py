@@ -1,7 +1,5 @@
 """Our tessellation and our steady solver beside others', on the same data and in the same process."""
 
-from __future__ import annotations
-
 import math
 import warnings
 

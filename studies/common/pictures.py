@@ -1,7 +1,5 @@
 """Pictures of many pixels as one short cell of a table, and back: whole steps, differences along rows, compressed."""
 
-from __future__ import annotations
-
 import base64
 import zlib
 

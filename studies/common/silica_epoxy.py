@@ -1,7 +1,5 @@
 """Random dispersions of silica spheres in epoxy (section 5 of Haddad et al. 2021), and one solve of one as a row."""
 
-from __future__ import annotations
-
 from demheat.gallery import EDGE, EPOXY, SILICA
 from studies.harness import methods
 from studies.harness.cost import measured

@@ -1,7 +1,5 @@
 """The slab of Haddad et al. (2021), figure 5: its scene, and its network by law."""
 
-from __future__ import annotations
-
 from demheat.scene import Material, Scene
 
 # Section on transient conduction; its Table 1 prints a heat capacity of 0.9 J/(kg K), a thousandth of a metal's.

@@ -1,7 +1,5 @@
 """Means of a body's values in equal slices across one axis."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -4,8 +4,6 @@ Eqs. 18-19 as printed swap the initial and the surface temperature and lose the 
 series, `references.series`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene import Material, Scene

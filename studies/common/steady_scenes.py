@@ -1,7 +1,5 @@
 """Steady scenes of every kind that methods are compared on, and which of them constants of the DEM were found on."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import gallery

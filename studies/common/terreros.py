@@ -1,7 +1,5 @@
 """The beam and the sheet of Terreros et al. (2013), their packings, and what is read off their fields."""
 
-from __future__ import annotations
-
 from functools import cache
 
 from demheat.dem.calibration import calibration

@@ -32,6 +32,7 @@ CASES = [
     for links in LINKS
     for mean in MEANS
 ]
+VALUES = True
 
 
 def QUICK(case):
@@ -39,25 +40,11 @@ def QUICK(case):
     return case["spread"] in (0.15, 0.3) and (case["links"], case["mean"]) == (7.5, "arithmetic")
 
 
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
-
-
 def run(spread, links, mean, method):
     """C_t, scatter of the flux, errors of one sphere and links of one set, means over packings."""
     from studies.ct_search.rows import set_row
 
     return set_row(spread, links, mean)
-
-
-def warm_up(spread, links, mean, method):
-    """Make and keep the packings, load the solver."""
-    from studies.ct_search import rows
-
-    for seed in rows.SEEDS:
-        rows.packed(spread, seed, periodic=True), rows.packed(spread, seed, periodic=False)
-    rows.of_one(spread, links, mean, rows.SEEDS[0])
 
 
 def claims(df):

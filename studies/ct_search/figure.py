@@ -1,7 +1,5 @@
 """Maps of the search: what each set gives, coloured by how far that is off what is printed."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.ct_search.means import LIMITS, PAPER, TOLERANCES, ranked

@@ -1,7 +1,5 @@
 """What the rows of the search say of more particles, how far that is off what is printed, and the best set."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import referee

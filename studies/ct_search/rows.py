@@ -1,7 +1,5 @@
 """Rows of the search: what one set of spread, links and mean radius gives on a few packings."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import referee

@@ -11,7 +11,6 @@ from studies.damage.cases import CRACKED, DEBONDED, DRAWS, LATTICE, PACKED, RADI
 from studies.harness import methods
 from studies.harness.pick import pick, present, worst
 
-PAPER = {}
 TIMEOUT = 3600.0
 # Of a case: what is not a knob of its method.
 DAMAGE = ("share", "radius", "body", "number", "removed", "draw")
@@ -61,6 +60,7 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -75,21 +75,11 @@ def QUICK(case):
     return few and case["removed"] in (0.01, 0.2, 0.4, 0.65, 0.85)
 
 
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
-
-
 def run(part, name, **case):
     """Solve one damaged body."""
     from studies.damage import rows
 
     return {"debonded": rows.debonded, "cracks": rows.cracks, "links": rows.links}[part](**case)
-
-
-def warm_up(part, name, method, **case):
-    """Load the solver."""
-    methods.warm_up(method, **{knob: value for knob, value in case.items() if knob not in DAMAGE})
 
 
 def claims(df):

@@ -1,7 +1,5 @@
 """Conductivity against damage: spheres that have come off, discs, links that are gone."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.damage.cases import NEIGHBOURS, RADII, REMOVED, THRESHOLD

@@ -1,7 +1,5 @@
 """What the rows lead to: means over draws, beside the theory of random resistors."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.referee import value_error

@@ -1,7 +1,5 @@
 """One solve of a damaged body, as a row."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import lru_cache
 

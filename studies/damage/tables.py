@@ -1,7 +1,5 @@
 """The tables of damage."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from studies.damage.means import left, theory

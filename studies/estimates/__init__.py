@@ -28,7 +28,6 @@ BESIDE, FEW = (
 # Limits from elsewhere: asked of intervals before there were any.
 ELSEWHERE = ("share of", "interval over the error", "over its error")
 MODULES = {"all": "studies.estimates.rows", "effective": "studies.estimates.reached"}
-PAPER = {}
 # Scenes that a method solves exactly do not tell what has moved on others.
 BY_ITSELF = ("scene",)
 # Limits that are far from the values, and why they are no nearer.
@@ -55,7 +54,6 @@ FAILS = {
         "conductivity and changes from mesh to mesh are chance; the fifth, an array, is off by 7.4 % on its mesh"
     ),
 }
-TIMEOUT = 1800.0
 
 
 def _cases():

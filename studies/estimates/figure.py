@@ -1,7 +1,5 @@
 """What methods say of their errors against their errors."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.estimates.means import answered, inside, present

@@ -1,7 +1,5 @@
 """Figures read off the rows of estimates."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from studies.common.drawn import ACCURACY

@@ -1,7 +1,5 @@
 """What `demheat.effective` says of a drawn scene at an accuracy, beside the exact tensor."""
 
-from __future__ import annotations
-
 import numpy as np
 
 import demheat.cheapest

@@ -1,7 +1,5 @@
 """What methods say of their own errors on one drawn scene, beside their errors."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -89,6 +89,7 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -99,24 +100,12 @@ def QUICK(case):
     return case["particles"] == 3_000 or (case["loading"], case["domain"]) == ("flux", "cube")
 
 
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
-
-
 def run(loading, domain, packing, particles, seed, method, *, spread=0.3, replicas=1, **knobs):
     """C_t of one packing under one load."""
     from studies.fig03_calibration.rows import calibrated, packed
 
     sample = packed(loading, domain, packing, particles, seed, spread=spread, replicas=replicas)
     return calibrated(sample, loading, **knobs)
-
-
-def warm_up(loading, domain, packing, particles, seed, **more):
-    """Load the solver; the packing, kept or made anew, is not part of what is compared."""
-    from studies.fig03_calibration.rows import calibrated, packed
-
-    calibrated(packed("periodic", "cube", "relaxed", 1_000, 0), "periodic")
 
 
 def claims(df):

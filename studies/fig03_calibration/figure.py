@@ -1,7 +1,5 @@
 """Figure of the calibration: C_t by load and number of particles, and at one number by what else is changed."""
 
-from __future__ import annotations
-
 from studies.fig03_calibration.variants import PAPER, PRINTED, VARIANTS, VARIED, unchanged, variant
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PINK
 from studies.harness.pick import pick

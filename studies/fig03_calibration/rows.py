@@ -1,7 +1,5 @@
 """Packings and homogeneous solves of the calibration: what one C_t costs and says."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.dem.calibration import calibration

@@ -1,7 +1,5 @@
 """The table of the calibration."""
 
-from __future__ import annotations
-
 from studies.fig03_calibration.variants import KNOBS, VARIED
 
 

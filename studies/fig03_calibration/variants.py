@@ -1,7 +1,5 @@
 """What a case of the calibration may change, one thing at a time, and the rows with and without a change."""
 
-from __future__ import annotations
-
 from studies.harness.pick import pick
 from studies.harness.printed import printed
 

@@ -95,8 +95,6 @@ def _look(field, exact):
 
 def warm_up(method, name=None, **knobs):
     """Make and keep the packing, load and compile."""
-    if method in MODULES:
-        return import_module(MODULES[method]).warm_up(**knobs, times=(10.0,))
     return sphere_in_time.prepare((1.0,), _look, method=method, **knobs)
 
 

@@ -1,7 +1,5 @@
 """Figure of the sphere's centre: its temperature and errors in time, errors by unknowns, the network's variants."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.common import sphere_in_time

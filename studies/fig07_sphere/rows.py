@@ -4,8 +4,6 @@ A cube stands for the sphere where C_t is calibrated, as the sphere has no two o
 of the same radii and volume, of LSA one of as many particles.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -60,11 +58,3 @@ def network_row(packing, held, particles, seed, *, times):
         row |= {f"errors_{way}": cell(errors), f"error_10s_{way}": errors[list(times).index(10.0)]}
         row[f"worst_{way}"] = abs(referee.worst(errors)[1])
     return row
-
-
-def warm_up(packing, held, particles, seed, *, times):
-    """Make and keep the packings, load and compile."""
-    made = ball(packing, particles, seed)
-    cube(packing, made, particles, seed)
-    # Fewer leave no bulk in the cube.
-    network_row("relaxed", held, 3_000, 0, times=times)

@@ -1,7 +1,5 @@
 """What stands below the table of the sphere's centre: the network's variants, and the stall of quadratic elements."""
 
-from __future__ import annotations
-
 from studies.common.paper_variants import parted, shown, told_of
 from studies.fig07_sphere.means import PAPER, TIGHTER, network_errors, plain
 from studies.harness.pick import pick

@@ -1,7 +1,5 @@
 """Figure of the study of halos."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.fig10_halo.statistics import BINS, DENSITIES, DEPTHS, PAPER, SHOWN, WEIGHTINGS, long

@@ -1,7 +1,5 @@
 """Rows of the study of halos: the fluxes of particles in a homogeneous block, and their averages."""
 
-from __future__ import annotations
-
 from demheat.dem import solve
 from demheat.laws import Calibrated
 from demheat.packing.cache import relaxed

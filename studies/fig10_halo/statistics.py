@@ -1,7 +1,5 @@
 """What a row keeps of the fluxes of particles, by the halo's radius: written from fields, read from tables."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import referee

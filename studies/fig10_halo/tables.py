@@ -1,7 +1,5 @@
 """The tables of the study of halos."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.fig10_halo.statistics import COSTED, PAPER, SHOWN, WEIGHTINGS, long

@@ -111,10 +111,7 @@ def run(name, scene=None, contrast=None, periodic=False, *, method, **solver):
 
 def warm_up(name, scene=None, contrast=None, periodic=False, *, method, **solver):
     """Load the solver; make and keep the network's packing, which is not part of what is compared."""
-    if method in MODULES:
-        import_module(MODULES[method]).warm_up(**solver)
-    else:
-        methods.warm_up(method, **solver)
+    methods.warm_up(method, **solver)
 
 
 def claims(df):

@@ -1,7 +1,5 @@
 """Figure of the single inclusion: k over the contrast, errors of the methods, and of the paper's network's variants."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.common.paper_looks import draw_variants

@@ -1,7 +1,5 @@
 """Tables of the single inclusion: the methods, what a first reader asks for, and the paper's network's variants."""
 
-from __future__ import annotations
-
 import math
 
 from studies.common.paper_variants import best_variant, parted, shown, told_of, variant_errors

@@ -70,6 +70,8 @@ def _cases():
 
 
 CASES = list(_cases())
+# What such solves cost is in `fig14_single_inclusion`, and halos in `fig10_halo`.
+VALUES = True
 
 
 def QUICK(case):
@@ -78,11 +80,6 @@ def QUICK(case):
     fits = all(case[key] == value for key, value in coarsest.items() if key in case)
     usual = case["name"] not in ("dem-plain", "fem-p1") and case.get("ratio") in (None, *RATIOS)
     return fits and usual and not case.get("seed")
-
-
-def VALUES(case):
-    """All: what such solves cost is in `fig14_single_inclusion`, and halos in `fig10_halo`."""
-    return True
 
 
 def run(name, ratio=None, *, method, **knobs):
@@ -111,24 +108,6 @@ def _over_halos(field):
 
     found = averaged(field, POINTS, [radius * field.scene.size[0] for radius in HALOS])
     return {"halo_radius": cell(HALOS)} | {f"halo_q_{letter}": cell(means) for letter, means in found.items()}
-
-
-def warm_up(name, ratio=None, *, method, **knobs):
-    """Make and keep the packing, load and compile."""
-    import numpy as np
-
-    from demheat import dem
-
-    if "particles" not in knobs:
-        methods.warm_up(method, **knobs)
-        return
-    from demheat.packing.cache import relaxed
-
-    scene = sphere_in_cube()
-    relaxed(knobs["particles"], size=scene.size, periodic=False, seed=knobs["seed"])
-    small = dem.solve(scene, **{**knobs, **methods.small(method)})
-    middle = np.array([scene.size]) / 2
-    small.temperature_at(middle), _flux_at(small, ratio)(middle)
 
 
 def _flux_at(field, ratio):

@@ -3,8 +3,6 @@
 A cell holds a grid of numbers as text, row by row; rows of the table bring errors, the row "exact" the field itself.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import referee

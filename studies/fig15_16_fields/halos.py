@@ -1,7 +1,5 @@
 """The exact field averaged over halos, as the fluxes of particles are: what a halo alone does to a flux."""
 
-from __future__ import annotations
-
 import numpy as np
 
 # Irrational numbers whose multiples fill an interval evenly; two, so that angle and radius are not alike.

@@ -1,7 +1,5 @@
 """The table of fields inside a sphere and around it: methods, and what the paper prints."""
 
-from __future__ import annotations
-
 from demheat import referee
 from studies.harness.cells import numbers
 from studies.harness.methods import resolution

@@ -159,9 +159,6 @@ ORDER = 12
 
 def warm_up(name, kind=None, fraction=None, realisation=None, boundary="gradient", axes="y", *, method, **knobs):
     """Make the dispersion and the packing, load and compile."""
-    if method in MODULES:
-        import_module(MODULES[method]).warm_up(**knobs)
-        return
     made = silica_epoxy.scene(kind, fraction, seed=realisation, boundary=boundary)
     if "particles" in knobs:
         from demheat.packing.cache import relaxed

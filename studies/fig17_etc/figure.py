@@ -1,7 +1,5 @@
 """The figure of fig17_etc: conductivity with its bounds, errors of the methods, and deviations between cells."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import referee

@@ -1,7 +1,5 @@
 """Means over axes and realisations of random dispersions, their intervals, and the bounds of each."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import referee

@@ -1,7 +1,5 @@
 """Rows of the paper's network: the first cells of all fractions by one packing."""
 
-from __future__ import annotations
-
 from studies.common import paper_network
 from studies.fig17_etc.scenes import first_cells
 
@@ -13,8 +11,3 @@ def _cells(held):
 def network_row(held, **case):
     """All first cells by one packing of the network."""
     return paper_network.row_of(_cells(held), held=held, **case)
-
-
-def warm_up(held, **case):
-    """Make and keep the dispersions and the packing; load what solves."""
-    paper_network.warm_up(_cells(held), held=held, **case)

@@ -1,7 +1,5 @@
 """The table of fig17_etc: k and its deviation between cells, bounds and estimates, errors and costs of the methods."""
 
-from __future__ import annotations
-
 import math
 
 from demheat import referee

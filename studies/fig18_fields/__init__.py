@@ -86,6 +86,8 @@ def _cases():
 
 
 CASES = list(_cases())
+# What such solves cost is in `many_inclusions`.
+VALUES = True
 
 
 def QUICK(case):
@@ -97,11 +99,6 @@ def QUICK(case):
     method = methods.all_methods()[case["name"]]
     coarsest = methods.at(method, methods.spent(method, RESOLUTIONS)[0])
     return coarsest.items() <= case.items() and method.role == "main"
-
-
-def VALUES(case):
-    """All: what such solves cost is in `many_inclusions`."""
-    return True
 
 
 def run(name, boundary=None, *, method, **knobs):
@@ -118,18 +115,6 @@ def run(name, boundary=None, *, method, **knobs):
 def _is_drawn(name, boundary="walls", **knobs):
     """The finest row of each method between walls, and the paper's network as the paper has it."""
     return boundary == "walls" and name in DRAWN and DRAWN[name].items() <= knobs.items()
-
-
-def warm_up(name, boundary=None, *, method, **knobs):
-    """Make and keep the spheres and the packing, load and compile."""
-    from studies.fig18_fields import rows as fig18_rows
-
-    if name == "arrangement":
-        fig18_rows.spheres_in("walls")
-    elif method in MODULES:
-        import_module(MODULES[method]).warm_up(**knobs)
-    else:
-        fig18_rows.warm_up(boundary, method=method, **knobs)
 
 
 def claims(df):

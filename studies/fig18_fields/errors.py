@@ -1,7 +1,5 @@
 """Errors of the rows of a study of fields against the witness of the same load, from their tables alone."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import referee

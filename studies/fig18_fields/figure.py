@@ -1,7 +1,5 @@
 """Figure of the study of fields among many spheres."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import referee

@@ -1,7 +1,5 @@
 """Rows of the paper's network among many spheres: its flux is that of the particles, averaged over halos."""
 
-from __future__ import annotations
-
 from studies.common import paper_network
 from studies.fig18_fields.rows import looked, spheres_in
 
@@ -23,8 +21,3 @@ def network_row(held, *, fine=False, **case):
     factor = field.stats["calibration"]
     found = looked(field, boundary, lambda points: halo_flux(field, ratio=RATIO, at=points) / factor, fine=fine)
     return row | {"under": boundary} | found | {"mean_flux": found["mean_flux"] / factor}
-
-
-def warm_up(held, **case):
-    """Make the dispersion and the packing, load and compile."""
-    paper_network.warm_up({"k": spheres_in(_boundary(held))}, held=held, **case)

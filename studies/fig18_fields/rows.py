@@ -1,9 +1,5 @@
 """Rows of the study of fields among many spheres: the arrangement, its exact witnesses, and every method on it."""
 
-from __future__ import annotations
-
-from dataclasses import replace
-
 import numpy as np
 
 from demheat.terminal.slices import filled, plane
@@ -11,7 +7,6 @@ from studies.common import silica_epoxy
 from studies.common.field_errors import mean_diameter
 from studies.common.pictures import packed
 from studies.common.silica_epoxy import LOW, POINTS, SPAN
-from studies.harness import methods
 from studies.harness.cells import cell
 from studies.harness.cost import measured
 
@@ -98,16 +93,3 @@ def circles(scene):
         if square > 0:
             found.append((sphere.center[1], sphere.center[2], square**0.5))
     return np.array(found) / scene.size[0]
-
-
-def warm_up(boundary, *, method, **knobs):
-    """Make the dispersion and the packing, load and compile, also what looks at the field."""
-    scene = spheres_in(boundary)
-    methods.warm_up(method, **knobs)
-    if "particles" in knobs:
-        from demheat.packing.cache import relaxed
-
-        relaxed(knobs["particles"], size=scene.size, periodic=scene.periodic, seed=knobs["seed"])
-        one = replace(scene, inclusions=scene.inclusions[:1])
-        small = methods.load(method).solve(one, **{**knobs, **methods.small(method)})
-        small.temperature_at(np.array([scene.size]) / 2), small.flux_at(np.array([scene.size]) / 2)

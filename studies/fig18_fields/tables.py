@@ -1,7 +1,5 @@
 """Lines of the table of the study of fields among many spheres."""
 
-from __future__ import annotations
-
 from studies.common.paper_variants import parted, shown
 from studies.fig18_fields.errors import BOUNDARIES, at_points, network_errors, network_means, witness
 from studies.harness import methods

@@ -82,7 +82,6 @@ FAILS = {
     "outside of certain bounds": "bricks bound from above, and slowly where four cells meet; bounds have finer ones",
     "bricks of half the size": "fluxes are without bound at edges where four cells meet, the more the contrast",
 }
-PAPER = {}
 TIMEOUT = 3600.0
 
 
@@ -141,6 +140,7 @@ def _walks(part, contrast, fraction, walks):
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -148,11 +148,6 @@ def QUICK(case):
     return (
         case["part"] == "primitive" and case.get("fraction") == HALF and case["name"] not in ("dem", "walkers")
     ) or (case["part"] == "knot" and case["name"] == "fem")
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def run(name, part, contrast, method, fraction=None, **knobs):

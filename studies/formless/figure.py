@@ -1,7 +1,5 @@
 """Conductivities between bounds, how far methods are apart, and where they lie in walkers' intervals."""
 
-from __future__ import annotations
-
 from studies.formless import walked
 from studies.formless.parts import GOOD, LABYRINTHS
 from studies.formless.verdicts import with_elements

@@ -1,7 +1,5 @@
 """What a row of the study is made of: a solve, a walk or a bracket of one scene, over the matrix's conductivity."""
 
-from __future__ import annotations
-
 import math
 
 from references import bounds

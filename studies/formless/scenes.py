@@ -1,7 +1,5 @@
 """The scenes: periodic cells of one edge in which surfaces without formulas part two phases."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Lines of the study's table: a scene each."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from demheat import referee

@@ -1,7 +1,5 @@
 """What the rows must hold to: distances between methods, from walkers and from bounds, and what symmetry says."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Walkers as a referee: which of their rows judges a scene, and whether a method's value lies in their interval."""
 
-from __future__ import annotations
-
 from demheat import referee
 from studies.formless.parts import BAD, BOARDS, GOOD, LABYRINTHS
 from studies.harness.pick import pick

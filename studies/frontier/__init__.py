@@ -24,7 +24,6 @@ FURTHER = list(second_cases())
 # Limits from elsewhere: guessed or asked before there were rows.
 ELSEWHERE = ("Scenes on which", "recommend:", "effective:", "Pairs of scene")
 MODULES = {"ngsolve": "studies.peers.programs.ngsolve", "effective": "demheat.cheapest"}
-PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "its cost over that of the cheapest method": "what was asked of it before there were any rows",

@@ -1,7 +1,5 @@
 """What `recommend` and `effective` are worth on scenes that none of their laws was fitted to."""
 
-from __future__ import annotations
-
 import statistics
 
 from studies.common.searches import means

@@ -5,8 +5,6 @@ Laws tell seconds of the machine that searches were made on; on another the same
 their solves take there (`pace`).
 """
 
-from __future__ import annotations
-
 import math
 import statistics
 import tempfile

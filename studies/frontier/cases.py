@@ -1,7 +1,5 @@
 """Which searches there are, and how many processor seconds each may take."""
 
-from __future__ import annotations
-
 from studies.common.searches.in_time import IN_TIME
 from studies.common.searches.scenes import FOR_LAWS, HELD_BACK, MESHED, ONLY_SPHERES, SCENES
 from studies.common.searches.ways import ASKED, ASKED_S, WAYS

@@ -5,8 +5,6 @@
 writes them to `halves.csv` beside this file, in some minutes; no cost is among them, so the machine need not be quiet.
 """
 
-from __future__ import annotations
-
 import csv
 import sys
 import tempfile

@@ -6,8 +6,6 @@ fitted by least squares that count large deviations less (an error may cross zer
 other, with a little pull of every exponent of a scene's measure towards none: there are few scenes.
 """
 
-from __future__ import annotations
-
 import csv
 import json
 import math

@@ -11,8 +11,6 @@ keeps of all of them what they reach, and at what cost, in `second.csv` beside t
 disturbed there, or is missing, is left out whole.
 """
 
-from __future__ import annotations
-
 import csv
 import statistics
 import sys

@@ -1,7 +1,5 @@
 """Claims on the rows of the frontier."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import referee

@@ -20,12 +20,10 @@ from studies.grains.cases import (
 )
 from studies.harness.pick import largest, pick, present
 
-PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "spread of what is missing": "one limit for all arrays, and for quick rows, whose conductivities span less: .12",
 }
-TIMEOUT = 1800.0
 
 
 def _cases():
@@ -45,6 +43,7 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -56,23 +55,11 @@ def QUICK(case):
     return case["fraction"] == FRACTIONS[1] and case["realisation"] == 0 and case["contrast"] != GOOD
 
 
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
-
-
 def run(part, method, **case):
     """Solve grains as a network, and the same as a continuum."""
     from studies.grains import rows
 
     return {"array": rows.array, "contact": rows.contact, "bed": rows.bed}[part](**case)
-
-
-def warm_up(part, method, **case):
-    """Load the solvers."""
-    from studies.grains import rows
-
-    rows.contact(0.2, None)
 
 
 def claims(df):

@@ -6,8 +6,6 @@ grid like that of oblate spheroids around the disc, in whose coordinates the fie
 a line of it, as is the plane through the middle.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import spsolve

@@ -1,7 +1,5 @@
 """Errors of networks of grains against gaps, contacts and conductivities."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

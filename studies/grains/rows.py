@@ -1,7 +1,5 @@
 """One bed of grains as a network, and as a continuum, as a row."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

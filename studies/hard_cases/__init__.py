@@ -41,7 +41,6 @@ MODULES = {"all": "studies.hard_cases.ways"}
 # Errors of whole answers, of which solvers leave 1e-7: a verdict's words of a refusal may change, the rest may not.
 TOLERANCES = {"verdicts": Tolerance(1e-6, 1e-7)}
 COMPARED_AS = {"verdicts": lambda cell: json.dumps([each[:-1] for each in json.loads(cell or "[]")])}
-PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "too wide to judge": "a share of a few scenes of one family, which others drawn would have doubled",
@@ -54,6 +53,7 @@ CASES = [
     for family, number in EACH.items()
     if seed < number
 ]
+VALUES = True
 # Share of a method's answers that must be verified: of the main ones and witnesses, and of those beside.
 MAIN, BESIDE = 0.7, 0.4
 
@@ -61,11 +61,6 @@ MAIN, BESIDE = 0.7, 0.4
 def QUICK(case):
     """A scene each of some families."""
     return (case["family"], case["seed"]) in SHOWN
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def run(family, seed, method):
@@ -77,10 +72,6 @@ def run(family, seed, method):
     if family == "time":
         return bodies.in_time(seed)
     return rows.steady(family, seed, changed=seed % CHANGED == 0 and family not in UNCHANGED)
-
-
-def warm_up(family, seed, method):
-    """Nothing: costs are not what is shown."""
 
 
 def claims(df):

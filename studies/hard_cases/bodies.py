@@ -1,7 +1,5 @@
 """Hard cases without a conductivity: walls that meet, and heat in time. What is judged is the temperature."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

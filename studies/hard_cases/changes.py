@@ -3,8 +3,6 @@
 Grids go with a scene that is turned or mirrored; packings do not, and are held to what both answers may be off.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

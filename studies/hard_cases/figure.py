@@ -1,7 +1,5 @@
 """Outcomes by method and by family as bars, and every error beside what is right."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.hard_cases.means import title, verdicts

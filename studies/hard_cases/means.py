@@ -1,7 +1,5 @@
 """Verdicts of rows as a data frame, and shares of them."""
 
-from __future__ import annotations
-
 import json
 
 import pandas as pd

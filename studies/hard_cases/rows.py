@@ -1,7 +1,5 @@
 """All methods on one hard scene as a row."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 

@@ -3,8 +3,6 @@
 Boxes are about one metre wide and matrices conduct one or so, but in the family that changes units.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Balls as surfaces of other kinds, level sets, triangles, unions, ellipsoids: what is true of them is known."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

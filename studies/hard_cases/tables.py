@@ -1,7 +1,5 @@
 """Families by methods."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from studies.hard_cases.means import title, verdicts

@@ -1,7 +1,5 @@
 """What is true of a scene, and what is said of one answer to it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import NamedTuple

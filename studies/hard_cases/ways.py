@@ -1,7 +1,5 @@
 """The methods that take part, with knobs drawn by seed."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

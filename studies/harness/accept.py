@@ -6,8 +6,6 @@ cheapest row takes long the cheaper rows tell that the same code makes; all rows
 what that finds moved is made again here.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import chain
 

@@ -1,7 +1,5 @@
 """How many rows run beside one on its machine: what they cost then is not what they cost alone."""
 
-from __future__ import annotations
-
 import fcntl
 import os
 import tempfile

@@ -1,7 +1,5 @@
 """Numbers as one cell of a table, and back: what a row keeps of curves and pictures."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

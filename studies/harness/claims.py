@@ -1,7 +1,5 @@
 """Claims judged on the rows of a study: a sentence, a value and its limit."""
 
-from __future__ import annotations
-
 import math
 import re
 import traceback

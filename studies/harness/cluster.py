@@ -1,7 +1,5 @@
 """Rows of a study on a Dask cluster: each in a fresh process of some worker, home one by one."""
 
-from __future__ import annotations
-
 from contextlib import contextmanager
 from functools import cache, partial
 

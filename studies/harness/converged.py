@@ -1,7 +1,5 @@
 """What a method would find with infinitely fine resolution, from its own rows: Richardson's extrapolation."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from references.richardson import extrapolate

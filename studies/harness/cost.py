@@ -1,7 +1,5 @@
 """What a solve costs: wall and processor seconds, peak memory; and what the machine's memory can deliver."""
 
-from __future__ import annotations
-
 import ctypes
 import gc
 import os

@@ -1,7 +1,5 @@
 """Why claims fail: a study's `FAILS` has words of their sentences, and for each the reason, or that nobody knows it."""
 
-from __future__ import annotations
-
 
 def why(study, claim):
     """Why a claim fails, as the study has it; empty if it does not fail, or the study does not say."""

@@ -1,7 +1,5 @@
 """How figures look: one style, and colours that colour-blind readers tell apart (Okabe and Ito 2008)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.harness import methods

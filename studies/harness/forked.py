@@ -5,8 +5,6 @@ and Numba start when they are loaded are not in a copy; both make theirs anew th
 process takes the first's place. On other systems than Linux every row starts from nothing.
 """
 
-from __future__ import annotations
-
 import gc
 import importlib
 import os

@@ -1,7 +1,5 @@
 """Groups of a study's rows that stand or fall together, and whose rows are looked at for those of others."""
 
-from __future__ import annotations
-
 import math
 
 from studies.harness.store import MADE, case_key

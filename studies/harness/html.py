@@ -1,7 +1,5 @@
 """The report as one HTML page: no file, font or script from elsewhere, and room enough on a telephone."""
 
-from __future__ import annotations
-
 import re
 from html import escape
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Rows as plain commands for a batch system, and home again."""
 
-from __future__ import annotations
-
 import json
 import shlex
 import sys

@@ -1,7 +1,5 @@
 """How long rows take: those of a full record before they are made, by those that are stored."""
 
-from __future__ import annotations
-
 import math
 from datetime import datetime
 

@@ -1,7 +1,5 @@
 """Which machines rows come from: seconds of different ones never stand on one curve."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 

@@ -3,8 +3,6 @@
 A row names its method and, as `method`, its module; a case adds what the method fixes, the scene and the resolution.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import tempfile

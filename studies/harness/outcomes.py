@@ -1,7 +1,5 @@
 """What a paper prints, and whether it came out: the claims that judge it, with a word for their verdict."""
 
-from __future__ import annotations
-
 WORDS = {"ok": "reproduced", "FAIL": "different", "not judged": "not judged"}
 
 

@@ -1,7 +1,5 @@
 """Rows of a data frame by their columns, and errors averaged over packings: what claims and figures are made of."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A study's figure as files: PNG, a vector copy beside it, and small enough for a page that holds many."""
 
-from __future__ import annotations
-
 import base64
 import io
 import re

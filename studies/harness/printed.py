@@ -1,7 +1,5 @@
 """What the papers print, kept apart from how rows are stored: some rows compare themselves with it."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Where a row comes from: commit, day, machine, threads, versions."""
 
-from __future__ import annotations
-
 import ast
 import hashlib
 import os

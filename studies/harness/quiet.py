@@ -1,7 +1,5 @@
 """How much of a row's time was not its own: processors that others used, and kernels that it had to compile."""
 
-from __future__ import annotations
-
 import math
 import os
 import sys

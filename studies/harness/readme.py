@@ -4,8 +4,6 @@ A mark names a study, and a function of it: one that makes rows to print, withou
 came out in words, without a name `words`.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

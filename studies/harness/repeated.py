@@ -1,7 +1,5 @@
 """A short run again and again, each from where the first began: its cost is the least, and says how far it scatters."""
 
-from __future__ import annotations
-
 import sys
 import tempfile
 import time

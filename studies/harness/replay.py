@@ -5,8 +5,6 @@ others. So an older row is borne out by the cheapest of its group, made again; w
 look is wanted, by those of groups that the same code makes (`groups.followed`).
 """
 
-from __future__ import annotations
-
 import math
 import re
 from concurrent.futures import ThreadPoolExecutor

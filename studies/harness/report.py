@@ -1,7 +1,5 @@
 """All studies of a folder in one report: their pages, a short README.md, and index.html that needs no other file."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path

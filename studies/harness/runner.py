@@ -7,9 +7,10 @@ A study is a module with
 - `QUICK(case)`, true for the cases of a quick run;
 - `run(**case)`, a dict of metrics; costs it measures itself (`cost.measured`) replace the whole run's, and a "status"
   with a "note" says of a refusal that it is one;
-- `claims(df)`, pairs of a sentence with a value and a limit; `PAPER`, what the paper prints;
+- `claims(df)`, pairs of a sentence with a value and a limit;
 - optionally `plot(df)`, a figure where one says more than the table: without, it is one of the claims; `VALUES(case)`,
-  true for the cases of which nobody asks what they cost: their rows have none, and are made side by side;
+  true for the cases of which nobody asks what they cost, or `VALUES = True` for all: rows have none, and are made side
+  by side;
   `warm_up(**case)`, untimed; `again(**case)`, of a row that is made for its values alone what is no matter of costs,
   where not all of `run` is; `table(df)`, what to print, with its docstring as caption; `notes(df)`, sentences below it
   that are made of the rows; `words(df)`, what other pages say of it; `TIMEOUT`, seconds per row;
@@ -27,8 +28,6 @@ One that is too long for a file is a folder of its name. These stand in `__init_
 made of rows in `errors` or `means`, lines of the table in `tables`, the drawing in `figure`. Errors are defined by
 `demheat.referee` alone.
 """
-
-from __future__ import annotations
 
 import importlib
 import json

@@ -1,7 +1,5 @@
 """Which rows' costs count: those of a commit, measured while the machine was quiet; and how old rows are."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections import Counter
@@ -37,8 +35,9 @@ def _quiet(row):
 
 
 def values_only(study, case):
-    """Whether nobody asks what a row costs: by the study's `VALUES`. Then it may be made beside another."""
-    return hasattr(study, "VALUES") and bool(study.VALUES(case))
+    """Whether nobody asks what a row costs, by the study's `VALUES`: then it may be made beside another."""
+    asked = getattr(study, "VALUES", False)
+    return bool(asked(case)) if callable(asked) else asked
 
 
 def uncosted(study):

@@ -1,7 +1,5 @@
 """Rows of a study in one CSV file, written row by row so that a killed run loses nothing."""
 
-from __future__ import annotations
-
 import math
 import tempfile
 from contextlib import suppress

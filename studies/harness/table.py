@@ -1,7 +1,5 @@
 """From a study's CSV alone: its table and claims in Markdown, its figure."""
 
-from __future__ import annotations
-
 import math
 import traceback
 from pathlib import Path

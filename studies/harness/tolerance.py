@@ -7,8 +7,6 @@ may end a step earlier (`BESIDE`), the mesher may take another turn there, and c
 (`ELSEWHERE`): such a row is held to less.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from typing import NamedTuple

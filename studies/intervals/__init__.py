@@ -45,7 +45,6 @@ ELSEWHERE = ("share of", "same of scenes", "interval over the error")
 MODULES = {"truth": "studies.intervals.truth", "fft-em": "references.fft"} | {
     name: {"dem": "demheat.dem"}.get(module, f"references.{module}") for name, module in LIMITS.items()
 }
-PAPER = {}
 # Kinds that a method solves exactly do not tell what has moved on others.
 BY_ITSELF = ("scene",)
 # Why claims on the stored rows fail.
@@ -95,6 +94,7 @@ def _case(kind, seed, method):
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -102,11 +102,6 @@ def QUICK(case):
     if case["seed"] == OF_LIMITS[0]:
         return case["scene"] == SHOWN[0] and case["method"] in ("truth", *LIMITS)
     return case["seed"] == 0 and case["scene"] in SHOWN
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def run(scene, seed, method):

@@ -1,7 +1,5 @@
 """What methods say of their errors against their errors, a point for each scene."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.harness.figures import BLACK, GREY, look

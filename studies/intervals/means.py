@@ -1,7 +1,5 @@
 """Intervals of rows beside what is true, and shares of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 

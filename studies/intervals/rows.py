@@ -1,7 +1,5 @@
 """One scene by one method: its answer and the interval that it gives by itself; or what is known of it."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scenes of every kind, drawn by seed, each with what is known of its conductivity; matrices conduct 1."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What is known of a conductivity: a number, exact or within its doubt, or a bound."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figure of many_inclusions."""
 
-from __future__ import annotations
-
 from studies.harness import methods
 from studies.harness.figures import BLACK, GREY, look
 

@@ -1,7 +1,5 @@
 """The table of many_inclusions."""
 
-from __future__ import annotations
-
 import math
 
 from studies.common import silica_epoxy

@@ -40,7 +40,6 @@ FAILS = {
         "by 1.7 of them, root mean square, this one by .27 %"
     ),
 }
-PAPER = {}
 COSTS = ("bytes_per_sphere",)
 TIMEOUT = 3600.0
 

@@ -1,7 +1,5 @@
 """Packings by our Lubachevsky-Stillinger algorithm and by others, and what they are like: rows of `packings`."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

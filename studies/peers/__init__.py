@@ -4,8 +4,6 @@ Each program runs as its users run it, in a process of its own; one that is not 
 what the others get: on an image the image, else the body.
 """
 
-from __future__ import annotations
-
 import math
 from importlib import import_module
 from pathlib import Path
@@ -24,8 +22,6 @@ PROGRAMS = tuple(sorted(path.stem for path in HOME.glob("*.py") if path.stem != 
 ELSEWHERE = ("other program over ours",)
 # Beds of grains are solved by no method, but by `demheat.grains`.
 MODULES = {name: f"studies.peers.programs.{name}" for name in PROGRAMS} | {"grains": "studies.peers.beds"}
-PAPER = {}
-TIMEOUT = 1800.0
 # What was asked for before any row was made: so many bodies of each program.
 FEWEST = 4
 # Ours: layers are exact but for the equations' tolerance; a sphere to what linear elements of a 25th of its edge give.

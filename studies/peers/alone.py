@@ -1,7 +1,5 @@
 """Programs that are measured as a whole, start and reading included, on two threads; versions of packages."""
 
-from __future__ import annotations
-
 import subprocess
 
 from studies.peers.outside import ran

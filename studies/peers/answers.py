@@ -3,8 +3,6 @@
 `python -m studies.peers.answers` writes `benchmark/answers/` from the stored rows of this study: nothing is computed.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

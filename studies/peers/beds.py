@@ -5,8 +5,6 @@ of its own for what a contact conducts, so that a scene is an arrangement and a 
 laws are worth beside each other is in `disc`: the conductance of a contact over that of a disc between half-spaces.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from typing import NamedTuple
 

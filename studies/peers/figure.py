@@ -1,7 +1,5 @@
 """Errors against costs: what each program makes of a body, and what that takes."""
 
-from __future__ import annotations
-
 from studies.harness import methods
 from studies.harness.figures import look
 from studies.peers.means import PARTS

@@ -4,8 +4,6 @@ All are cubes of 1 m between walls across x at 1 and 0 K, insulated elsewhere, i
 coated sphere. A program gets the body itself, a mesh that follows its interfaces, or an image of it.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache, partial
 

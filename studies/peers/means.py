@@ -1,7 +1,5 @@
 """What the rows of programs say together."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.peers.tables import ours

@@ -4,8 +4,6 @@ Straight tetrahedra that follow every interface, the phase of each, and the tria
 with the same elements all programs have the same equations: they must agree to what their solvers leave.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

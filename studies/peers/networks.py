@@ -1,7 +1,5 @@
 """Our network of a body as a system of equations, for linear solvers of others; and ours on the same."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """A program in a process of its own: which Python has it, how it is run, and what it cost."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

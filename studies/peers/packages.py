@@ -1,7 +1,5 @@
 """Programs that are packages of some Python: why one cannot run here, its version, and how its scripts are asked."""
 
-from __future__ import annotations
-
 import subprocess
 import tempfile
 from functools import cache, partial

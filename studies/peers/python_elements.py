@@ -1,7 +1,5 @@
 """Finite elements of others that are libraries in Python: what their scripts are given, and what they answer."""
 
-from __future__ import annotations
-
 import subprocess
 import tempfile
 from functools import partial

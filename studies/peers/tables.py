@@ -1,7 +1,5 @@
 """What the rows of programs say: errors by body, what each costs, what each cannot do."""
 
-from __future__ import annotations
-
 from importlib import import_module
 
 import pandas as pd

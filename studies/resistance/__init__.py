@@ -28,7 +28,6 @@ from studies.resistance.cases import (
 
 # A hundredth of the gap's least share: nothing is seen of it.
 ENOUGH = 1e-4
-PAPER = {}
 # Errors of the array, %, at each resolution, and of neutral spheres: of the conductivity and of the temperature.
 ARRAY_LIMITS = {"dem": (0.09, 0.02, 0.009), "fem": (0.25, 0.025, 0.005), "fft": (0.35, 0.25, 0.13)}
 NEUTRAL_LIMITS = {
@@ -67,6 +66,7 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -79,21 +79,11 @@ def QUICK(case):
     return case["fraction"] == FRACTIONS[0] and case["kapitza"] in (0.0, 0.1, 0.2)
 
 
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
-
-
 def run(part, name, **case):
     """Solve a scene whose surfaces resist."""
     from studies.resistance import rows
 
     return {"array": rows.array, "neutral": rows.neutral, "silica": rows.silica}[part](**case)
-
-
-def warm_up(part, name, method, kapitza=None, spheres=None, fraction=None, realisation=None, **knobs):
-    """Load the solver."""
-    methods.warm_up(method, **knobs)
 
 
 def claims(df):

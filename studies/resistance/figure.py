@@ -1,7 +1,5 @@
 """Errors against the Kapitza length, the fall of the conductivity, and what resistance the papers' gap asks for."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.harness import methods

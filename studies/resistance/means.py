@@ -1,7 +1,5 @@
 """What the rows of silica in epoxy lead to: the Kapitza length that a fall of the conductivity asks for."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import brentq
 

@@ -1,7 +1,5 @@
 """One solve of a scene whose surfaces resist, as a row."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

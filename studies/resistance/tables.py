@@ -1,7 +1,5 @@
 """Lines of the table of interfaces that resist."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from studies.harness import methods

@@ -25,7 +25,6 @@ RELEASED = "0ab3669"  # version 0.2.0
 BEFORE, MOST = 8_000_000, 30_000_000  # particles
 ACCURACY = 1e-4  # of the multipoles
 JUDGES = 1e-6  # of those that the cell of 83 spheres is judged by
-PAPER = {}
 # Largest error of what a method spends on an inclusion, %.
 COARSE = {"dem": 0.8, "fft": 4.0}
 # Limits that are far from the values, and why they are no nearer.

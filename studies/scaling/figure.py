@@ -1,7 +1,5 @@
 """The figure of scaling: CPU time against inclusions, stages of the DEM against particles, and memory."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, LOOK, ORANGE, PINK, RED, SKY, look

@@ -1,7 +1,5 @@
 """What is made of the rows of scaling: exponents, efficiencies, and what a larger cell would take."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

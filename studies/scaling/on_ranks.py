@@ -3,8 +3,6 @@
 The first rank prints what the row says as its last line. Kernels are loaded before anything is timed.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

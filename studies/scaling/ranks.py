@@ -1,7 +1,5 @@
 """Rows that are computed on the ranks of an MPI run, by a Python of their own that has PETSc."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

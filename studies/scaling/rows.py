@@ -1,7 +1,5 @@
 """What a row of scaling computes: a scene, and every stage from it to a conductivity with what the stage costs."""
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 

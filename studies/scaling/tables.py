@@ -1,7 +1,5 @@
 """The table of scaling."""
 
-from __future__ import annotations
-
 from demheat import referee
 from studies.harness.figures import LOOK
 from studies.harness.pick import pick

@@ -1,7 +1,5 @@
 """Rows of scaling that time a run as a whole: with an earlier code, from an empty cache of compiled code."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

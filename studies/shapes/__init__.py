@@ -27,7 +27,6 @@ from studies.shapes.cases import (
     WARMTH,
 )
 
-PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "sphere, DEM, 30000": "by second order from the limit with 3000 particles",
@@ -59,6 +58,7 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -72,21 +72,11 @@ def QUICK(case):
     return coarse and case["contrast"] == PARTS[part][0][-1]
 
 
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
-
-
 def run(part, name, **case):
     """Solve a scene of one shape."""
     from studies.shapes import rows
 
     return getattr(rows, part.replace(" ", "_"))(**case)
-
-
-def warm_up(part, name, contrast, method, fraction=None, **knobs):
-    """Load the solver."""
-    methods.warm_up(method, **knobs)
 
 
 def claims(df):

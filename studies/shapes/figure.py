@@ -1,7 +1,5 @@
 """Errors of each shape by each method, and those of fibres against the contrast."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.harness.figures import GREY, look

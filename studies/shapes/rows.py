@@ -1,7 +1,5 @@
 """One solve of a shape, as a row."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import referee

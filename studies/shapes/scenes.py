@@ -1,7 +1,5 @@
 """The scenes: each shape in a cell of one edge, where an exact value is known."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

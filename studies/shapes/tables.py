@@ -1,7 +1,5 @@
 """Errors of the shapes, worst of each part, and lines of the table."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from demheat.referee import value_error

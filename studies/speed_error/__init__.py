@@ -9,7 +9,6 @@ matrix, and that of the scalar FFT scheme beside Eyre-Milton's, each pair on the
 from studies.speed_error.cases import TIMEOUT, all_cases
 
 CASES = list(all_cases())
-PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "over that of the best plain pyamg": "to be no slower than the library is what is asked",

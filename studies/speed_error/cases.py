@@ -1,7 +1,5 @@
 """Which rows there are: scenes, methods and resolutions."""
 
-from __future__ import annotations
-
 from studies.harness import methods
 
 TIMEOUT = 3600.0

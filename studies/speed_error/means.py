@@ -1,7 +1,5 @@
 """Figures read off rows: what costs scatter by, and what a packing costs."""
 
-from __future__ import annotations
-
 import numpy as np
 
 # Costs nearer to each other than this factor are a tie: of solves that were run twice nine in ten are (a claim).

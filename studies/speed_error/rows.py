@@ -1,7 +1,5 @@
 """What a row computes: a solve and what it costs, the DEM's from an empty packing cache and then again."""
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 

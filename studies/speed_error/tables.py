@@ -1,7 +1,5 @@
 """Lines of the table: what a solve or a kernel costs beside the same again, or beside its peer."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from studies.harness import methods

@@ -1,7 +1,5 @@
 """Claims on the rows of speed against error."""
 
-from __future__ import annotations
-
 from demheat import referee
 from studies.harness.pick import pick, present
 from studies.speed_error import means

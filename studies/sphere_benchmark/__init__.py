@@ -15,7 +15,6 @@ import benchmark
 from studies.harness import methods
 from studies.sphere_benchmark.cases import GUEST, LADDERS, MOST, POROUS, RELATIONS
 
-PAPER = {}
 TIMEOUT = 900.0
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {f"relation {name}": "rounding, which differs by processor" for name in ("uniform", "scaled", "reversed")}

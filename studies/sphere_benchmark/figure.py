@@ -1,7 +1,5 @@
 """The figure: errors against costs, a point for each scene, a line through medians; and scenes within an error."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.harness.figures import BLACK, BLUE, GREY, LOOK, ORANGE, PINK, SKY, look

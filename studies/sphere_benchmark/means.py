@@ -1,7 +1,5 @@
 """What is claimed of the rows, and rows of one method brought together."""
 
-from __future__ import annotations
-
 import numpy as np
 
 import benchmark

@@ -1,7 +1,5 @@
 """A row: one scene by one method, its errors against what is known; or two scenes that a relation ties."""
 
-from __future__ import annotations
-
 import copy
 
 import numpy as np

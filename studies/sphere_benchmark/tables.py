@@ -1,7 +1,5 @@
 """Lines of the tables: a scene with all methods, and a method over all scenes."""
 
-from __future__ import annotations
-
 import benchmark
 from demheat.io.known import known_of
 from studies.sphere_benchmark.cases import LADDERS

@@ -7,8 +7,6 @@ without what is known, and prints the conductivity as its last line; with exit s
 on the standard error says why.
 """
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import json

@@ -29,7 +29,6 @@ FASTER = {("slab", 100_000): 12.0, ("sphere", 1_000_000): 25.0}
 LARGE = 100_000
 # Limits from elsewhere: what was asked.
 ELSEWHERE = ("over the accuracy asked for",)
-PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "heat lost over heat moved": "rounding of sums over up to 1e6 particles and 1e5 steps",

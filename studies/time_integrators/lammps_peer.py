@@ -6,8 +6,6 @@ every step; nothing moves, and its list of pairs, made once, holds the links and
 usual DEM ("friction": Hertz, Mindlin with memory, damping) or the cheapest it has ("bare": springs and nothing else).
 """
 
-from __future__ import annotations
-
 import ctypes
 import sys
 import time

@@ -4,8 +4,6 @@ The sphere is that of Haddad et al. (Int. J. Thermal Sciences 164, 2021, 106799)
 surface at 200 C from time 0 on.
 """
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

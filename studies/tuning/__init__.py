@@ -16,7 +16,6 @@ GAIN = 0.2
 # As shipped, with offsets of a half, and with the margin that there was before.
 BASE = ((None, 1.0), ("OFFSET", 0.7), ("MARGIN", 0.372))
 NAMES = {"RELAXED": "relaxed packings", "BEFORE": "relaxed packings with the twins of 0.2.0"}
-PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "median error over that of relaxed packings": "one limit for all numbers, that of what was to be no worse",
@@ -41,6 +40,7 @@ FAILS = {
 
 
 CASES = list(cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -50,11 +50,6 @@ def QUICK(case):
     if case["part"] == "varied":
         return case["particles"] == 2_000 and (case["constant"], case["factor"]) in BASE
     return case["particles"] <= 1_000 and case["constant"] is None and case["contrast"] == 10.0
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def run(part, particles=None, group=None, family=None, constant=None, factor=1.0, *, method, **probe):

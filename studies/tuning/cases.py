@@ -1,7 +1,5 @@
 """Which scenes, factors and packings the study of tuning spends its time on."""
 
-from __future__ import annotations
-
 from studies.tuning.scenes import FAMILIES, MESHED
 
 # Particles, and how many scenes of each family they are spent on.

@@ -3,8 +3,6 @@
 They are no knobs of `solve`: here they are set in their modules, one at a time, and set back.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import contextmanager
 from typing import NamedTuple

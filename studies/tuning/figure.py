@@ -1,7 +1,5 @@
 """Errors of unseen scenes against the factor of each constant; where the error comes from against the particle size."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PINK, RED, SKY

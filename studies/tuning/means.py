@@ -1,7 +1,5 @@
 """Errors of the study of tuning, in per cent, read off its rows; what is made of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 

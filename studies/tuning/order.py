@@ -9,8 +9,6 @@ The first is what quadrature by two-point fluxes makes of the exact temperature,
 network's temperature is from the exact one, in energy, and always lowers the conductivity.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

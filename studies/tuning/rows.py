@@ -1,7 +1,5 @@
 """Rows of the study of tuning: conductivities of unseen scenes with one constant changed; where errors come from."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

@@ -4,8 +4,6 @@ All lie in a cube, so that they share packings. Where multipoles know the scene 
 sphere off its centre, or spheres are nested, quadratic finite elements on two meshes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.addition import add_spheres

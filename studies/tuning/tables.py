@@ -1,7 +1,5 @@
 """Lines of the table of tuning."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from studies.harness.pick import pick

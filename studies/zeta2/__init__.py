@@ -34,7 +34,6 @@ PLACED = (
 RATIO, LARGER = 6.0, 9.0
 # Realisations come in rows of five; the scatter of one, 2 to 23 %, leaves means of ten within 2 to 17 %, at 95 %.
 AT_ONCE, REALISATIONS = 5, 10
-PAPER = {}
 # Errors of voxels, %, by their number along an edge: on SC, on dilute SC, on BCC and FCC; on random cells.
 VOXEL_LIMITS = {64: (1.0, 8.0, 1.5), 128: (0.3, 1.0, 0.25), 256: (0.08, 0.8, 0.045)}
 RANDOM_LIMITS = {128: 4.0, 256: 1.2}
@@ -77,6 +76,7 @@ def _cases():
 
 
 CASES = list(_cases())
+VALUES = True
 
 
 def QUICK(case):
@@ -88,11 +88,6 @@ def QUICK(case):
     if (case["fraction"], case["first"], case["ratio"], case["gap"]) != (0.2, 0, RATIO, 0.0):
         return False
     return case["part"] == "cells" or (case["placed"] == "lsa" and case.get("voxels") != ON_RANDOM[1])
-
-
-def VALUES(case):
-    """All: nobody asks what they cost."""
-    return True
 
 
 def run(part, method, **where):
@@ -107,21 +102,6 @@ def run(part, method, **where):
         "surface": zeta2_rows.surface_row,
     }
     return rows[part](**where)
-
-
-def warm_up(part, method, first=0, cells=1, **where):
-    """Place and keep the spheres, compile and load."""
-    from studies.zeta2 import rows as zeta2_rows
-
-    run("array", method, array="sc", fraction=0.3, voxels=32)
-    if part == "array":
-        return
-    placing = {key: where[key] for key in ("placed", "gap", "fraction", "ratio")}
-    for seed in range(first, first + cells):
-        zeta2_rows.random_cell(**placing, seed=seed)
-    small = {"placed": "rsa", "gap": 0.0, "fraction": 0.1, "ratio": 6.0, "first": 99}
-    if part in ("conductivity", "surface"):
-        run(part, method, **small, **({"cells": 1} if part == "surface" else {}))
 
 
 def claims(df):

@@ -1,7 +1,5 @@
 """Figure of the study of zeta_2: cells beside the polynomial, errors of voxels, bounds, two-point probability."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat import referee

@@ -1,7 +1,5 @@
 """Random cells of the study of zeta_2 pooled: means, confidence intervals, differences in standard errors."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

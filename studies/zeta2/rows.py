@@ -1,7 +1,5 @@
 """Rows of the study of zeta_2: cubic arrays, random cells, voxels on them, conductivities and surfaces."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The table of the study of zeta_2: a line for each array and each kind of random cell."""
 
-from __future__ import annotations
-
 from studies.harness.pick import pick
 from studies.zeta2.means import KEYS, pooled, with_bounds
 

@@ -15,7 +15,6 @@ Text below the title.
 """
 import os, time
 CASES = [{"name": "plain", "x": 1.5}, {"name": "second", "x": 2.0}, *EXTRA]
-PAPER = {}
 TIMEOUT = 60.0
 REPEATS = 1
 

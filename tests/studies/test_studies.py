@@ -68,7 +68,6 @@ def test_cases_are_sound(name):
     study = runner.load(name)
     quick = [case for case in study.CASES if study.QUICK(case)]
     assert 0 < len(quick) < len(study.CASES)
-    assert isinstance(study.PAPER, dict)
     assert all(provenance.module_of(study, method) for method in {case["method"] for case in study.CASES})
     keys = [store.case_key(case) for case in study.CASES]
     assert len({*keys}) == len(keys)

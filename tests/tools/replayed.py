@@ -9,8 +9,6 @@ method, law and integrator with a quick row, and each such file, has one. The ch
 killed run goes on. One row after another costs less than in processes of their own: a half.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import json

@@ -17,8 +17,6 @@ What is mapped or in chunks passes slab by slab into the smallest type that hold
 no further than the header's shape needs: `packed`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What is made of an image before it is a body: a part of it, fewer and larger voxels, labels out of grey values."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

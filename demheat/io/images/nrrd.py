@@ -1,7 +1,5 @@
 """NRRD: its header as pynrrd reads it, the data beside or behind it in no more bytes than the header tells of."""
 
-from __future__ import annotations
-
 import io
 import math
 import warnings

@@ -3,8 +3,6 @@
 Goldberg et al., OME-Zarr 0.4 and 0.5 (ngff.openmicroscopy.org): `multiscales` in the attributes of a group.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Packed bytes, unpacked in pieces and no further than what they are for needs."""
 
-from __future__ import annotations
-
 import bz2
 import gzip
 import lzma

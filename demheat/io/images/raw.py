@@ -1,7 +1,5 @@
 """Arrays of NumPy, and raw bytes with a MetaImage header: mapped, nothing is unpacked."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

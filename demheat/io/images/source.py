@@ -1,7 +1,5 @@
 """What all formats of images have in common: a file that is there, bytes as an array, errors as one line."""
 
-from __future__ import annotations
-
 import math
 from contextlib import contextmanager
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Stacks of TIFF: pages of one channel, packed without loss or not at all."""
 
-from __future__ import annotations
-
 import io
 import logging
 import math

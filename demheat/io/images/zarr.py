@@ -4,8 +4,6 @@ Codecs are plug-ins, one of which runs what a file holds ("pickle"); a few that 
 before a byte is decoded.
 """
 
-from __future__ import annotations
-
 import io
 import itertools
 import json

@@ -17,8 +17,6 @@ vtp           .vtp                           all but provenance; links as lines 
 Text may be packed: a further suffix .gz.
 """
 
-from __future__ import annotations
-
 import gzip
 import io
 import os

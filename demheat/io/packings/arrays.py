@@ -1,7 +1,5 @@
 """NumPy archives (.npz): every bit, with provenance and domain."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

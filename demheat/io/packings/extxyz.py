@@ -1,7 +1,5 @@
 """Extended XYZ of OVITO and ASE (ovito.org, XYZ file reader; ase.io.extxyz)."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

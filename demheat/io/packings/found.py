@@ -1,7 +1,5 @@
 """From what a file holds to a packing: one gate for all formats."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

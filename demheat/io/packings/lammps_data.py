@@ -1,7 +1,5 @@
 """LAMMPS data files, atom style sphere (docs.lammps.org, read_data)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.io.packings.found import Found

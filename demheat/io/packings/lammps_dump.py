@@ -1,7 +1,5 @@
 """Dumps of LAMMPS and LIGGGHTS as text (docs.lammps.org, dump; cfdem.com, dump custom)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.io.packings.found import Found

@@ -1,7 +1,5 @@
 """NumPy archives (.npz) read with care: no more than the file can hold, nothing unpickled, changes seen."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import zipfile

@@ -1,7 +1,5 @@
 """The links of a network as lines between the spheres of a packing."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where packings are read from: regular files, in pieces, and never more out of them than they can honestly hold."""
 
-from __future__ import annotations
-
 import gzip
 import io
 import os

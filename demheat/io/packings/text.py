@@ -1,7 +1,5 @@
 """Lines of text files, counted, and the tables of numbers in them."""
 
-from __future__ import annotations
-
 import re
 import sys
 from functools import partial

@@ -3,8 +3,6 @@
 Written by hand, see `demheat.io.vtk`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.io.packings.segments import Segments

@@ -1,7 +1,5 @@
 """Spheres out of ParaView's PolyData (.vtp), as VTK, ParaView and LIGGGHTS write it."""
 
-from __future__ import annotations
-
 import base64
 import binascii
 import re

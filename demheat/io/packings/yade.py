@@ -1,7 +1,5 @@
 """Text files of YADE: x y z r (yade-dem.org, yade.export.text, textExt and yade.ymport.textExt)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.io.packings.found import Found

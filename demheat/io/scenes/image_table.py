@@ -1,7 +1,5 @@
 """An image from the tables of a file: where it is, what is made of it, which material each label is."""
 
-from __future__ import annotations
-
 import re
 
 from demheat.io.images import read_image

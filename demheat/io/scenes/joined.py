@@ -1,7 +1,5 @@
 """Spheres of a table that overlap, as unions: one body for each group that hangs together."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

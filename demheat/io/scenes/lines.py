@@ -4,8 +4,6 @@ The text must be valid TOML, which `tomllib` has seen to: this reader only walks
 table, inline ones and those in arrays included, for sure.
 """
 
-from __future__ import annotations
-
 import bisect
 import re
 

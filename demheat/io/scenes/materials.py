@@ -1,7 +1,5 @@
 """A material from a table of a file: its conductivity a number, three principal ones, or a tensor; how it depends."""
 
-from __future__ import annotations
-
 import math
 
 from demheat.io.scenes.table import Table

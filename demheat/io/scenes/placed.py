@@ -1,7 +1,5 @@
 """Inclusions and where they stand in a file: what a scene says of one, by its number, is said of that place."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import NamedTuple

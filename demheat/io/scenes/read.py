@@ -1,7 +1,5 @@
 """Scenes read from TOML files, and what else a file asks for."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from pathlib import Path

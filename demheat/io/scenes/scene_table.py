@@ -3,8 +3,6 @@
 Shapes say what of them is stored (`Shape.stored`); a new source adds a line to its table here.
 """
 
-from __future__ import annotations
-
 from dataclasses import MISSING, fields
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Names of shapes as others call them, and what they are called here."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from pathlib import Path

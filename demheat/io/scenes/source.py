@@ -1,7 +1,5 @@
 """A TOML file as it is read: its values, the line of each key, and errors that name file, line and key."""
 
-from __future__ import annotations
-
 import re
 import stat
 from pathlib import Path

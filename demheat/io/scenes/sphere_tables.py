@@ -1,7 +1,5 @@
 """Tables of spheres: a line of names, then a row for each, with commas, semicolons or tabs between its values."""
 
-from __future__ import annotations
-
 import csv
 import io
 import re

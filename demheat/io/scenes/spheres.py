@@ -1,7 +1,5 @@
 """Spheres of a scene from a table of their own: CSV, or a packing as LAMMPS, LIGGGHTS, YADE, OVITO and ASE write it."""
 
-from __future__ import annotations
-
 from demheat.io.scenes.shape_names import no_spheres
 from demheat.io.scenes.sphere_tables import UNITS, read_table
 from demheat.io.scenes.units import LENGTH, PLAIN, RESISTANCE, factor_of, scaled

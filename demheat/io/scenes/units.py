@@ -4,8 +4,6 @@ A unit is taken apart into base units and powers of metre, kilogram, second and 
 and "kW/m/K" are all read, and "W/mK" (watts for each millikelvin) is seen to be no conductivity.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Scenes written as TOML: what is read back is the same scene to the last bit."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 from dataclasses import fields

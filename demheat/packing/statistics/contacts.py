@@ -1,7 +1,5 @@
 """What the contacts of a packing say: coordination, rattlers and isotropy, from compressed rows as `contacts` gives."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from typing import NamedTuple

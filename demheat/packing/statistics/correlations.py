@@ -1,7 +1,5 @@
 """Pair correlations of a packing: g(r) of the centres and the two-point probability S2(r) of the sphere phase."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """How much of a packing lies in the core of its domain: exact volumes and surfaces of spheres cut by its faces."""
 
-from __future__ import annotations
-
 import math
 from itertools import product
 

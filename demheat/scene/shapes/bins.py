@@ -1,7 +1,5 @@
 """Cells that know which balls reach into them: the way from points to the few of many shapes that may hold them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whether triangles are a closed surface: corners joined, no edge open, none crossing, all looking outwards."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene.shapes.triangles import PAIRS, THIN, Triangles

@@ -1,7 +1,5 @@
 """How deep points lie in a union of convex shapes: beside its faces, and beside creases where two members meet."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene.shapes.base import Shape

@@ -1,7 +1,5 @@
 """Directions as users give them: unit vectors."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

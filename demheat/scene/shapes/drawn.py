@@ -1,7 +1,5 @@
 """How a shape is drawn that is known by triangles."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

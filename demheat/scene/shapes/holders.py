@@ -1,7 +1,5 @@
 """Which of many shapes hold points: balls all at once, others one by one where they may."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

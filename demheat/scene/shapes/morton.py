@@ -1,7 +1,5 @@
 """An order of points in which near ones stand near each other: every part of it is a part of space."""
 
-from __future__ import annotations
-
 import numpy as np
 
 # Morton keys take 21 bits per axis: more than any float coordinate of a packing needs to be near its neighbours.

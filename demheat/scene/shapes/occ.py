@@ -1,7 +1,5 @@
 """Bodies in a geometry of OpenCASCADE, which gmsh hands over: turned and moved to where they belong."""
 
-from __future__ import annotations
-
 import numpy as np
 
 # Axis and angle, rad, of a turn that leaves no seam or pole in a plane of symmetry, which may be a face of the box.

@@ -1,7 +1,5 @@
 """Which pairs of shapes a scene takes: disjoint, touching, or one inside the other and painted after it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from itertools import product

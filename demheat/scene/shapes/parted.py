@@ -4,8 +4,6 @@ How a plane is sought decides whether it is found, not whether it is right: how 
 direction is known in closed form.
 """
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -5,8 +5,6 @@ the power pi / (pi + angle) of the size beside an edge of a perfect conductor, 1
 programs that make elements take surfaces for smooth, too.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from demheat.scene.shapes.base import ALONG

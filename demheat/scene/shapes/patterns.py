@@ -6,8 +6,6 @@ flat faces and in rows along a cylinder they are; elsewhere steps between facets
 second order in their width. All planes are moved inwards so that the volume stays right.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Periodic images of shapes and of points."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Points all over the surface of a shape, each with the area that it stands for, by cells that close in on it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 

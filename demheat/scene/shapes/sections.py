@@ -1,7 +1,5 @@
 """What a plane leaves of a rectangular box, and the area in which it cuts it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 # A plane less inclined than this to an axis counts as parallel to it: rounding of the cubic pieces would be larger.

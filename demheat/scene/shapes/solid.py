@@ -1,7 +1,5 @@
 """What shapes in unbounded space have in common: repeats in periodic cells, parts in boxes with walls."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import fields

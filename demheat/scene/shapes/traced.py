@@ -6,8 +6,6 @@ neighbours on a grid differ, bisection finds the surface between them, bisection
 along the normal the distances of the nodes nearby. A spline between the nodes is the distance everywhere.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product

@@ -1,7 +1,5 @@
 """A closed surface of triangles: whether it is one, what it holds, and how far from it points are."""
 
-from __future__ import annotations
-
 from functools import cached_property
 
 import numpy as np

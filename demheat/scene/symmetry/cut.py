@@ -7,8 +7,6 @@ period apart: both are isothermal, and their temperatures differ by that of g. S
 three axes, between two isothermal and four insulated walls, has the conductivity of the cell.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 

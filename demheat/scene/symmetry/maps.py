@@ -6,8 +6,6 @@ nothing else does: a sphere moved by a millionth of the box breaks a symmetry. S
 and mirrors that take axes to axes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import permutations, product
 from typing import NamedTuple

@@ -4,8 +4,6 @@ Exit status: 0; 1 if a method that was asked for refused or failed; 2 for bad in
 names; 130 if interrupted; 141, without a word, if nobody reads what is printed.
 """
 
-from __future__ import annotations
-
 import sys
 from importlib import import_module
 

@@ -1,7 +1,5 @@
 """One method on one scene: its conductivity with an interval, what that cost, or why there is none."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The page of what programs answered: one HTML file, without script, font or picture from elsewhere."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from html import escape
 

@@ -1,7 +1,5 @@
 """Bounds of a scene's conductivity by its volume fractions alone."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

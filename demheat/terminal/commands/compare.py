@@ -3,8 +3,6 @@
 Each row is stored as soon as its method is done; the same command goes on where it was stopped.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 import time

@@ -1,7 +1,5 @@
 """`demheat effective`: the conductivity tensor of a body, by the method that gets to an accuracy at least cost."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 

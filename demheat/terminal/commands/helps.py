@@ -1,7 +1,5 @@
 """What `--help` says besides options: examples, methods and their knobs, units, formats, each from where it stands."""
 
-from __future__ import annotations
-
 from textwrap import fill
 
 from demheat.declared import all_methods

@@ -1,7 +1,5 @@
 """`demheat init`: a scene to begin with, written with comments that say what else may stand in its places."""
 
-from __future__ import annotations
-
 from demheat.runtime.paths import check_target, replaced
 
 USUAL = "scene.toml"

@@ -1,7 +1,5 @@
 """`demheat judge mine.json`: what answers of any program to the benchmark's scenes are worth, as a table and a page."""
 
-from __future__ import annotations
-
 import json
 from functools import cache
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Which methods a command is to run, and with which knobs: from the file's [solve] and from the command line."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from typing import NamedTuple

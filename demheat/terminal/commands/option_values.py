@@ -1,7 +1,5 @@
 """What is typed behind options, read: parts and per cent, seconds, names of methods; what is wrong names the option."""
 
-from __future__ import annotations
-
 import argparse
 import re
 from collections.abc import Sequence

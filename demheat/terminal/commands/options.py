@@ -1,7 +1,5 @@
 """The command line: its words, and what is said of a wrong one."""
 
-from __future__ import annotations
-
 import argparse
 import re
 

@@ -1,7 +1,5 @@
 """`demheat recommend`: which method gets to an accuracy at least cost, and what each would cost."""
 
-from __future__ import annotations
-
 from demheat.cheapest import recommend
 from demheat.terminal.commands.effective import wanted_accuracy
 from demheat.terminal.commands.words import scene_line

@@ -1,7 +1,5 @@
 """`demheat report`: one page of HTML that needs nothing else, about a scene and what methods answer."""
 
-from __future__ import annotations
-
 import sys
 import time
 

@@ -1,7 +1,5 @@
 """Rows of a comparison in one CSV file, written as soon as each method is done: a killed run loses that method only."""
 
-from __future__ import annotations
-
 import hashlib
 from functools import cache
 from importlib.util import find_spec

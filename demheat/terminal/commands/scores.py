@@ -1,7 +1,5 @@
 """What answers to scenes of the benchmark are worth: errors, bounds, symmetry, intervals, and costs as declared."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple

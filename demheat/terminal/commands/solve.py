@@ -1,7 +1,5 @@
 """`demheat solve`: one method or some on a scene, each with its conductivity, interval and cost."""
 
-from __future__ import annotations
-
 import sys
 import time
 

@@ -1,7 +1,5 @@
 """`demheat view`: a picture of a scene, three slices of its phases, and of its field by a method."""
 
-from __future__ import annotations
-
 import sys
 
 from demheat.runtime.paths import check_output, made_folder, replaced

@@ -1,7 +1,5 @@
 """Scenes and answers in words, for terminals and pictures."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The page: its parts in order, each made of what has been computed before."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json

@@ -1,7 +1,5 @@
 """A scene and its fields as bytes on a regular grid, for the page's viewer."""
 
-from __future__ import annotations
-
 import base64
 import zlib
 from typing import NamedTuple

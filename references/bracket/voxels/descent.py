@@ -1,7 +1,5 @@
 """Conjugate gradients that lower an energy; whatever they leave, the energy where they stop is that of their field."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

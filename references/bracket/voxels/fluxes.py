@@ -1,7 +1,5 @@
 """Lower bounds: balanced fluxes, normal parts constant on the faces of voxels, of nearly least energy."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

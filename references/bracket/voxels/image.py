@@ -1,7 +1,5 @@
 """Bounds of the conductivity of a periodic image, each voxel of which conducts as it is told."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -5,8 +5,6 @@ a part that may still lie in several conducts as the worst of them, for a lower 
 be there is asked of the part's nearest and farthest points: spheres and layers are convex, so the answer is sure.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import singledispatch

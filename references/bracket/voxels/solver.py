@@ -1,7 +1,5 @@
 """Bounds of a scene's conductivity on a regular grid, whatever its surfaces cut."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

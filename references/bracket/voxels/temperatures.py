@@ -1,7 +1,5 @@
 """Upper bounds: continuous temperatures, trilinear in each voxel, of nearly least energy."""
 
-from __future__ import annotations
-
 import math
 from itertools import combinations
 

@@ -1,7 +1,5 @@
 """A periodic image's or scene's conductivity tensor between two that are certain, by three loads on one grid."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

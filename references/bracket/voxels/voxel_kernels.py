@@ -4,8 +4,6 @@ Kernels work on the planes low <= i < high of the first axis of a periodic grid,
 `references.fft.hexahedron_kernels`. Energies are means over the voxels, so that a unit load's is a conductivity.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -7,8 +7,6 @@ conductivity is that of the method with the narrower interval; it may be off by 
 that interval if that is more.
 """
 
-from __future__ import annotations
-
 import csv
 import sys
 

@@ -1,7 +1,5 @@
 """Cost over error, a panel for each scene: each method at its best, the frontier broad, ties grey."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

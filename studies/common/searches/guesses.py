@@ -1,7 +1,5 @@
 """What was expected before there were any searches, as claims."""
 
-from __future__ import annotations
-
 from studies.common.searches import means
 
 # Set before any search: the DEM the cheapest for any shape, to so many per cent, on so many scenes.

@@ -1,7 +1,5 @@
 """Bodies that warm up, a slab, a ball and a beam of the papers: temperatures at points are held against series."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Who gets to an accuracy at least cost, read off the rows; what the scatter of costs cannot tell apart is a tie."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from functools import partial

@@ -1,7 +1,5 @@
 """A program of others on a scene of the frontier, in a process of its own (`studies.peers`)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from studies.common.searches.ways import Way, knobs_at

@@ -1,7 +1,5 @@
 """What a row computes: the search of one way on one scene, or one value of its knob alone."""
 
-from __future__ import annotations
-
 import gc
 import json
 import math

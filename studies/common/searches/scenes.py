@@ -1,7 +1,5 @@
 """The scenes of the frontier: steady ones of every kind, and as many that no constant was ever found on."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import lru_cache

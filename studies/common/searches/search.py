@@ -4,8 +4,6 @@ A value *reaches* a target if its error is within it, and so are those of all fi
 least: an error that crosses zero wins nothing by it.
 """
 
-from __future__ import annotations
-
 import math
 import statistics
 from collections.abc import Callable

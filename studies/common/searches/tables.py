@@ -1,7 +1,5 @@
 """Lines of the table: one scene each, a column for each target."""
 
-from __future__ import annotations
-
 from studies.common.searches import means
 from studies.common.searches.scenes import SCENES
 from studies.common.searches.search import TARGETS

@@ -1,7 +1,5 @@
 """What is true of each scene: closed forms, multipoles, or what two methods close in on, each with its doubt."""
 
-from __future__ import annotations
-
 import csv
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """The ways to a conductivity: a method with what it fixes, its knob, and the values of it that are walked."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import NamedTuple

@@ -8,8 +8,6 @@ conductivity is the mean of the heat through both walls.
 https://www.ctcms.nist.gov/fipy, version 4.0.3.
 """
 
-from __future__ import annotations
-
 from studies.peers import packages
 from studies.peers.given import bodies
 

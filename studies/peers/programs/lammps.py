@@ -6,8 +6,6 @@ pair of types: the harmonic mean is given here, while LAMMPS itself mixes two ty
 documentation prints no value of a conductivity, so `own` is not there. Nothing moves; held grains are not integrated.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

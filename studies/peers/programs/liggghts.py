@@ -6,8 +6,6 @@ O'Brien (1977) and Chaudhuri et al. (2006), whom the manual cites, have. Nothing
 what others do. Debian's LIGGGHTS-PUBLIC 3.8.0; its documentation prints no value, so `own` is not there.
 """
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import tempfile

@@ -6,8 +6,6 @@ of the Python index is without MPI and so without hypre. The conductivity is the
 Its documentation prints no value of a steady solution with its error that runs from the package alone: no `own`.
 """
 
-from __future__ import annotations
-
 from studies.peers import packages
 from studies.peers.given import bodies
 

@@ -5,8 +5,6 @@ the sum of volumes. Cost is that of the cells alone, on one thread. The wrapper'
 coordinates of the box; areas and volumes are computed here. Its documentation prints no value that can be run.
 """
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

@@ -8,8 +8,6 @@ Meshing is told not to use threads either, whose waiting took ten times the CPU 
 https://ngsolve.org, version 6.2.2608. Its documentation prints no value of a solid whose conduction is known: no `own`.
 """
 
-from __future__ import annotations
-
 from functools import singledispatch
 
 from demheat.scene import Layer, Shape, Sphere

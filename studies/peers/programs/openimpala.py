@@ -8,8 +8,6 @@ same code is in the Python package and hears them by AMReX's interface for C, wh
 https://github.com/BASE-Laboratory/OpenImpala, version 4.4.9.
 """
 
-from __future__ import annotations
-
 from studies.peers import packages
 from studies.peers.given import bodies
 

@@ -7,8 +7,6 @@ takes one conducting phase, with walls in the first and last slices too. Both by
 https://openpnm.org, version 3.6.4, and https://porespy.org, version 3.2.0.
 """
 
-from __future__ import annotations
-
 from studies.peers import packages
 from studies.peers.given import bodies
 

@@ -5,8 +5,6 @@ passes, which left 0.1 to 1.1 times that of the right-hand side. Its cost is of 
 islands and wall heats included, in this process; what is compiled is loaded before.
 """
 
-from __future__ import annotations
-
 from studies.peers import networks
 from studies.peers.outside import Found
 

@@ -7,8 +7,6 @@ solve are the cost, reading and copying the matrix are not. "gamg" is smoothed a
 https://petsc.org, version 3.18.5. Its documentation prints no value of a conductivity: no `own`.
 """
 
-from __future__ import annotations
-
 from studies.peers import networks, packages
 
 TITLE = "PETSc"

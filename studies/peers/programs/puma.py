@@ -7,8 +7,6 @@ is of a periodic body, so of bodies that mirror themselves it answers the same q
 https://github.com/nasa/puma, version 3.2.2; the package index has another program under the name pumapy.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from studies.peers import packages

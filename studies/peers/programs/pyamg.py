@@ -4,8 +4,6 @@ The same equations, first temperatures, residual and cost as those of PETSc; its
 https://pyamg.readthedocs.io, version 5.3.0. Its documentation prints no value of a conductivity: no `own`.
 """
 
-from __future__ import annotations
-
 from studies.peers import networks, packages
 
 TITLE = "PyAMG"

@@ -5,8 +5,6 @@ jam below the papers' 0.64 (`density="max"` goes there); cost is that of the pac
 equal spheres jam at 0.64 at its default growth rate: `own`.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 

@@ -7,8 +7,6 @@ in single precision. They stop when the flux through slices across x differs by 
 https://github.com/tldr-group/taufactor, version 1.2.1 with PyTorch 1.13.
 """
 
-from __future__ import annotations
-
 from studies.peers import packages
 from studies.peers.given import bodies
 

@@ -7,8 +7,6 @@ r_1 r_2, a the radius of the circle in which two spheres cut each other. Debian'
 held grains are set by hand.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess
