@@ -29,10 +29,10 @@ def inside(df, name, what=""):
     return rows[f"{name}_{what}off"].abs() <= rows[f"{name}_{what}half"] + 100 * ACCURACY
 
 
-def over(df, name, what="", nothing=NOTHING):
+def over(df, name, what=""):
     """What the method says over its error, for each scene where there is one."""
     rows = answered(df, name)
-    rows = rows[rows[f"{name}_{what}off"].abs() > nothing]
+    rows = rows[rows[f"{name}_{what}off"].abs() > NOTHING]
     return rows[f"{name}_{what}half"] / rows[f"{name}_{what}off"].abs()
 
 

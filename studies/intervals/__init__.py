@@ -47,8 +47,7 @@ MODULES = {"truth": "studies.intervals.truth", "fft-em": "references.fft"} | {
 }
 # Kinds that a method solves exactly do not tell what has moved on others.
 BY_ITSELF = ("scene",)
-# Why claims on the stored rows fail.
-# Not looked into: seen when rows of before images had intervals were made anew.
+# Seen when rows from before images had intervals were made anew, and not looked into.
 ON_IMAGES = (
     "on images of few voxels four of twelve miss, by 1.3 times the half of their interval at most; of all else one of "
     "202 does; why is not known yet"
@@ -57,6 +56,7 @@ ON_LEVEL_SETS = (
     "on level sets three of nine miss, by 4.5 times the half of their interval at most (.26 % off), and one image of "
     "twelve; of all else none of 110 does; why is not known yet"
 )
+# Why claims on the stored rows fail.
 FAILS = {
     "DEM: share of intervals": ON_IMAGES,
     "DEM: the same of scenes": ON_IMAGES,

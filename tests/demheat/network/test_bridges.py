@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from spared import slow_but
 
 from demheat import Laguerre, Layer, Material, Scene, Sphere, solve
 from demheat.dem import networks
@@ -68,27 +69,25 @@ def test_what_lies_in_each_other_or_conducts_little_better_stays():
             assert np.array_equal(change(net, scene).conductance, net.conductance)
 
 
-# By multipoles, of which two runs here would take a minute: `references.multipole` at its default accuracy, 1e-5.
-KNOWN = {(0.0, 1e3): 15.86927, (1e-3, 1e4): 11.21950, (1e-5, math.inf): 18.50288}
+# Gap, contrast and load; by multipoles, of which two runs here would take a minute: `references.multipole` at its
+# default accuracy, 1e-5.
+KNOWN = {
+    "touching, walls": (0.0, 1e3, WALLS, 15.86927),
+    "walls": (1e-3, 1e4, WALLS, 11.21950),
+    "cell": (1e-5, math.inf, CELL, 18.50288),
+}
 
 
-@pytest.mark.parametrize(
-    ("gap", "contrast", "load"),
-    [
-        pytest.param(*known, load, id=name, marks=marks)
-        for known, load, name, marks in zip(
-            KNOWN, (WALLS, WALLS, CELL), ("touching, walls", "walls", "cell"), ((), pytest.mark.slow, ()), strict=True
-        )
-    ],
-)
-def test_spheres_in_order_that_touch_or_nearly(gap, contrast, load):
+@pytest.mark.parametrize("name", slow_but({"touching, walls", "cell"}, KNOWN))
+def test_spheres_in_order_that_touch_or_nearly(name):
     """85.7 and some 1e8 were told of the first and the last."""
+    gap, contrast, load, known = KNOWN[name]
     field = solve(
         Scene(UNIT, Material(1.0), [Sphere((0.5,) * 3, 1 / (2 + gap), Material(contrast))], **load), particles=2000
     )
-    assert field.error.lower < KNOWN[gap, contrast] < field.error.upper
+    assert field.error.lower < known < field.error.upper
     # The disc without twins is some five facets wide, and what cells over it conduct is known to a third or so.
-    assert_allclose(field.conductivity, KNOWN[gap, contrast], rtol=0.03)
+    assert_allclose(field.conductivity, known, rtol=0.03)
 
 
 def spheres(apart, radius):

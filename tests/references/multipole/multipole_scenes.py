@@ -21,7 +21,3 @@ def box(gradient=(0.0, 0.0, 1.0), shift=(0.0, 0.0, 0.0), parts=PARTS, size=SIZE)
 @cache
 def solved(order=14):
     return multipole.solve(box((0.5, -1.0, 2.0)), order=order, points_per_axis=20)
-
-
-def tensor(spheres, order):
-    return np.array([-multipole.solve(box(axis, parts=spheres), order=order).mean_flux for axis in np.eye(3)])
