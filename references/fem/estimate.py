@@ -10,12 +10,15 @@ import math
 
 import numpy as np
 
-from demheat.error import Refinement, by_refinement, conductivity_of, quietly
+from demheat.error import Refinement, beside, by_refinement, conductivity_of, quietly
 from demheat.extrapolation import Limit, by_extrapolation
 from demheat.scene.edges import SMOOTH, edge_order
+from references.mesh.lattice import CUBE, FEWEST
 
 # Meshes follow features: all their edges are made so many times longer, not the largest alone.
 RATIO = 1.4
+# Cubes of a lattice along an edge of the box below which coarser ones would be no coarser, as it has a fewest.
+CUBES = math.ceil(RATIO**2 * FEWEST)
 # Errors of the conductivity are found to fall with the power 3 between such meshes, as features keep their elements:
 # a fifth of them is left (even seeds). Where runs turn, or differ less the coarser they are, elements are too stiff for
 # as much as they lose in volume, and the interval counts on half of that power.
@@ -34,6 +37,9 @@ BESIDE_EDGES, ROUND = 0.4, 1.0
 
 def estimated(field, again, kind, *, steps=0.0):
     """Estimate of a field; `again` makes it of other knobs of its mesh."""
+    if field.stats.get("cubes", CUBES) < CUBES:
+        finer = min(field.scene.size) / (CUBE * CUBES)
+        return beside(field, quietly(lambda size: again(size=size), finer), "a finer mesh")
     least = _by_linear(field, again) if kind == "curved" else 0.0
 
     def coarser(level):
@@ -59,6 +65,8 @@ def _by_linear(field, again):
 
 def extrapolated(field, again, kind):
     """What a field closes in on, by coarser meshes."""
+    if field.stats.get("cubes", math.inf) < LIMIT.ratio**2 * FEWEST:
+        raise NotImplementedError("Field.extrapolated: no lattice is so coarse; Field.error has an interval")
     if kind != "curved":
         raise NotImplementedError("Field.extrapolated: of finite elements only curved quadratic ones have a limit")
 

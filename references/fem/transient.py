@@ -160,8 +160,9 @@ def _pace(scene, end):
     return paced(*([part for each in found for part in each[which]] for which in range(2)), end)
 
 
-def _at(scene, time, cells, coarser, **knobs):
-    """The field at one time, on longer elements."""
+def _at(scene, time, cells, coarser=1.0, size=None, **knobs):
+    """The field at one time, on longer elements, or on some of another size."""
+    cells = cells if size is None else cells | {"size": size}
     with one_blas_thread():
         (field,) = _fields(scene, [time], cells, coarser=coarser, **knobs)
     return field

@@ -37,7 +37,8 @@ def make_lattice(scene, *, size, order, curved):
 def _made(scene, size, quadratic, curved, done):
     scale = max(scene.size)
     box = np.array(scene.size) / scale
-    body = lattice(box, size / scale, periodic=scene.periodic)
+    counts = cubes(box, size / scale)
+    body = lattice(box, counts, periodic=scene.periodic)
     holds = [partial(_holds, shape, scale, scene.period) for shape in scene.inclusions]
     for number, inside in enumerate(holds, start=1):
         body = cut(body, inside, number)
@@ -50,7 +51,7 @@ def _made(scene, size, quadratic, curved, done):
     straightened, jacobian = straighten(points, cells, pairs) if quadratic else (0, 1.0)
     volumes, curves = volumes_of(points[cells]) * scale**3, bent(points[cells])
     walls = {name: wall(points, cells, box, name) for name in WALLS}
-    stats = {"straightened": straightened, "jacobian": jacobian}
+    stats = {"straightened": straightened, "jacobian": jacobian, "cubes": int(counts.min())}
     metres = np.where(points == box, scene.size, points * scale)
     mesh = Mesh(metres, cells, body.phase.astype(np.int32), volumes, curves, walls, pairs, stats)
     _check_volumes(scene, mesh, size)
@@ -62,9 +63,13 @@ def _holds(shape, scale, period, points):
     return shape.contains(points * scale, period=period)
 
 
-def lattice(box, size, *, periodic) -> Cells:
-    """Tetrahedra of cubes of about a size: each face between two cubes and both middles make four."""
-    counts = np.maximum(FEWEST, np.ceil(box / (CUBE * size) * (1 - 1e-9)).astype(int))
+def cubes(box, size):
+    """How many of about a size there are along each edge, (3,) int array."""
+    return np.maximum(FEWEST, np.ceil(box / (CUBE * size) * (1 - 1e-9)).astype(int))
+
+
+def lattice(box, counts, *, periodic) -> Cells:
+    """Tetrahedra of so many cubes along each edge: each face between two cubes and both middles make four."""
     ticks = [length * np.arange(n + 1) / n for length, n in zip(box, counts, strict=True)]
     middles = [0.5 * (t[1:] + t[:-1]) for t in ticks]
     corner = np.arange(np.prod(counts + 1)).reshape(counts + 1)

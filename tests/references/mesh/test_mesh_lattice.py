@@ -8,7 +8,7 @@ from demheat import LevelSet, Material, Scene, Sphere, gallery
 from references import exact, fem
 from references.mesh import make
 from references.mesh.cells import jacobian_coefficients, triangles_on, twins
-from references.mesh.lattice import lattice
+from references.mesh.lattice import cubes, lattice
 
 MATRIX, OTHER = Material(1.0), Material(10.0)
 ALONG = (1.0, 0.0, 0.0)
@@ -42,7 +42,8 @@ def cell(*shapes):
 
 @pytest.mark.parametrize("size", [(1, 1, 1), (1, 0.5, 2.3)])
 def test_a_lattice_fills_its_box_without_gaps(size):
-    body = lattice(np.array(size, float), 0.2, periodic=True)
+    box = np.array(size, float)
+    body = lattice(box, cubes(box, 0.2), periodic=True)
     nodes = body.points[body.cells]
     volumes = np.linalg.det(nodes[:, 1:] - nodes[:, :1]) / 6
     # Rounding alone.
@@ -111,6 +112,22 @@ def test_conductivity_of_a_ball_as_a_level_set_is_that_of_the_sphere():
     found = fem.solve(cell(BALL), size=0.09).conductivity
     # What gmsh's elements of that size lack is as much.
     assert_allclose(found, right / matrix, rtol=1e-3)
+
+
+def test_intervals_of_the_coarsest_lattice_hold():
+    # Coarser lattices are the same there: their runs, which differ by nothing, had the interval end at a ninth of the
+    # error, and it is told by one whose coarser runs are coarser.
+    like = gallery.simple_cubic(745.0, fraction=4 / 3 * np.pi * RADIUS**3)
+    right = exact.solve(like).conductivity / like.matrix.conductivity
+    scene = cell(LevelSet(ball, ((0.1,) * 3, (0.9,) * 3), Material(745.0)))
+    field = fem.solve(scene, size=0.18)
+    error = field.error
+    assert field.stats["cubes"] == 5 and error.how == "a finer mesh"
+    assert error.lower < right < error.upper
+    # And is no blanket.
+    assert error.upper - error.lower < 8 * abs(field.conductivity - right)
+    with pytest.raises(NotImplementedError, match="no lattice is so coarse"):
+        field.extrapolated  # noqa: B018
 
 
 def test_straight_elements_lose_volume_and_curved_ones_do_not():
