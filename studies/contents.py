@@ -17,7 +17,7 @@ HEADLINES = (
 HADDAD = "Haddad et al., Int. J. Thermal Sciences 164 (2021) 106799"
 TERREROS = "Terreros, Iordanoff, Charles, Comput. Mater. Sci. 69 (2013) 46"
 NETWORK = "The paper's network, "
-TABLE_2 = "As in the paper, 1.5e5 elements, halo of 11: "
+TABLE_2 = "As in the paper, "
 # Paper, what of it, the study that does the same, and words of the claims that hold the paper's own network, or its own
 # rule, to what the paper prints; or why there are none.
 FIGURES = (
