@@ -245,7 +245,7 @@ def pattern_count(radius, spacing):
 
 
 def fibonacci_sphere(count):
-    """Evenly spread unit vectors, (count, 3) float array."""
+    """Nearly even directions, (count, 3) float array of unit vectors (spherical Fibonacci lattice)."""
     k = np.arange(count) + 0.5
     z = 1.0 - 2.0 * k / count
     azimuth = np.pi * (1.0 + np.sqrt(5.0)) * k
