@@ -242,14 +242,10 @@ def _pinned(matrix, held, imposed, points):
 
 def _settled(found, scene, grid, temperature):
     """Give bodies that no heat passes their temperature, in place; bricks that none reaches."""
-    still = np.append(~found.passing, False)[found.node]
+    components.settle_still(found, scene, temperature)
     if not scene.periodic:
-        level = np.append(found.level, np.nan)[found.node]
-        known = still & np.isfinite(level)
-        temperature[known] = level[known]
         return np.append(~found.passing & np.isnan(found.level), False)[found.element].reshape(grid.shape)
     gradient = np.array(scene.gradient)
-    temperature[still] = -found.shift[still] @ (gradient * scene.size)
     # Trilinear: the mean over a brick is that of its corners.
     rest = (temperature - grid.points @ gradient)[grid.cells].mean(axis=1)
     inside, bodies = found.element >= 0, len(found.passing)
