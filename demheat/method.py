@@ -93,59 +93,29 @@ class Orders(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Method:
-    """A method as studies and suites know it.
+    """A method as studies and suites know it."""
 
-    Parameters
-    ----------
-    name : str
-        In rows, as "fem-p1".
-    title, label : str
-        In a few words, and in full for tables and legends; the label is the title by default.
-    role : {"main", "beside", "witness"}
-        Whether every study of methods takes it; or only those that name it; or it is what others are compared with.
-    knobs : mapping
-        What it fixes of its module's keywords, in the order of the keys of rows.
-    call : {"solve", "evolve", "estimate"}
-        The function of its module; `evolve` if it has no other.
-    resolution : Resolution, optional
-        None if nothing refines it.
-    small, coarse : float, optional
-        Values of that knob: for warm-ups, which are to cost next to nothing, by default the other; for the suite of
-        what methods owe.
-    tight : mapping
-        Knobs there with which only rounding is left of what is solved.
-    errors : Errors, optional
-        At the coarse value.
-    orders : Orders, optional
-    terms : tuple of float
-        Exponents of the size of an element whose terms extrapolation takes off; empty where the finest value counts.
-    exceptions : mapping of str to str
-        Of `PROPERTIES`, what is not claimed and why.
-    refuses : mapping of str to str
-        Of `FEATURES`, what it cannot do, and words of the error that says so.
-    look : (3,) tuple of str
-        Colour of `studies.harness.figures`, marker and line.
-    module : str
-        Name of its module, the last part of its path; whoever finds the method puts it in.
-    """
-
-    name: str
-    title: str
-    label: str = ""
+    name: str  # In rows, as "fem-p1"
+    title: str  # In a few words
+    label: str = ""  # In full, for tables and legends; the title by default
+    # "main", "beside" or "witness": every study of methods takes it; or only those that name it; or it is what others
+    # are compared with
     role: str = "main"
-    knobs: Mapping = field(default_factory=dict)
-    call: str = "solve"
-    resolution: Resolution | None = None
-    small: float | None = None
-    coarse: float | None = None
-    tight: Mapping = field(default_factory=dict)
-    errors: Errors | None = None
+    knobs: Mapping = field(default_factory=dict)  # Keywords of its module that it fixes, in the order of rows' keys
+    call: str = "solve"  # The function of its module: "solve"; "evolve" or "estimate" if it has no other
+    resolution: Resolution | None = None  # None if nothing refines it
+    small: float | None = None  # Value of that knob for warm-ups, next to nothing; by default the coarse one
+    coarse: float | None = None  # Value of that knob for the suite of what methods owe
+    tight: Mapping = field(default_factory=dict)  # Knobs there with which only rounding is left of what is solved
+    errors: Errors | None = None  # At the coarse value
     orders: Orders | None = None
+    # Exponents of the size of an element whose terms extrapolation takes off; empty where the finest value counts
     terms: tuple = ()
-    exceptions: Mapping = field(default_factory=dict)
+    exceptions: Mapping = field(default_factory=dict)  # Of `PROPERTIES`, what is not claimed and why
+    # Of `FEATURES`, what it cannot do, and words of the error that says so
     refuses: Mapping = field(default_factory=dict)
-    look: tuple = ("black", "P", ":")
-    module: str = ""
+    look: tuple = ("black", "P", ":")  # Colour of `studies.harness.figures`, marker and line
+    module: str = ""  # Name of its module, the last part of its path; whoever finds the method puts it in
 
     def __post_init__(self):
         for what, given, known in (
@@ -161,19 +131,7 @@ class Method:
         object.__setattr__(self, "small", self.coarse if self.small is None else self.small)
 
     def at(self, value, edge=1.0):
-        """Knobs at a value of the resolution, in a box of an edge.
-
-        Parameters
-        ----------
-        value : float or None
-            None without a resolution.
-        edge : float, m
-            Unit of values that are lengths.
-
-        Returns
-        -------
-        dict
-        """
+        """Knobs at a value of the resolution, in a box of an edge, m, the unit of values that are lengths."""
         if self.resolution is None:
             return {}
         return {self.resolution.knob: value * edge if self.resolution.metric else value}

@@ -13,38 +13,19 @@ from demheat.scene import Material, Scene, UniformSource
 
 
 class Known(NamedTuple):
-    """What is known of a scene.
+    """What is known of a scene."""
 
-    Attributes
-    ----------
-    by : str
-        "closed form", "series", "multipoles", "certain bounds" or "published".
-    conductivity : float or None, W/(m K)
-        Effective, along the load; None where no single number is asked for.
-    error : float or None, W/(m K)
-        The true one is no farther away.
-    error_is : str
-        What that rests on: "certain", "rounding" or "estimate".
-    positions : (n, 3) float array, m
-    times : (n,) float array, s, or None
-        None in a steady state.
-    temperature : (n,) float array, K or degrees Celsius
-        There; of a periodic cell less that of the first point.
-    flux : (n, 3) float array, W/m2, or None
-    temperature_error, flux_error : float or None, K and W/m2
-        As `error`; None without fluxes.
-    """
-
-    by: str
-    conductivity: float | None
-    error: float | None
-    error_is: str
-    positions: np.ndarray
-    times: np.ndarray | None
+    by: str  # "closed form", "series", "multipoles", "certain bounds" or "published"
+    conductivity: float | None  # W/(m K): Effective, along the load; None where no single number is asked for
+    error: float | None  # W/(m K): The true one is no farther away
+    error_is: str  # What that rests on: "certain", "rounding" or "estimate"
+    positions: np.ndarray  # (n, 3) float array, m
+    times: np.ndarray | None  # (n,) float array, s; None in a steady state
+    # (n,) float array, K or degrees Celsius: There; of a periodic cell less that of the first point
     temperature: np.ndarray
-    flux: np.ndarray | None
-    temperature_error: float | None
-    flux_error: float | None
+    flux: np.ndarray | None  # (n, 3) float array, W/m2
+    temperature_error: float | None  # K: As `error`
+    flux_error: float | None  # W/m2: As `error`; None without fluxes
 
 
 def known_of(table: dict) -> Known:

@@ -38,60 +38,34 @@ class Facets(NamedTuple):
 class Network(NamedTuple):
     """Conductances between particles and towards walls, and what is needed to read a field off their temperatures.
 
-    Attributes
-    ----------
-    centers : (n, 3) float array, m
-    size : (3,) float array, m
-    indptr, indices, image
-        As in `Facets`.
-    conductance : (m,) float array, W/K
-        H_pq = k S_pq / d_pq, symmetric.
-    wall_particle, wall_side : (w,) int arrays
-    wall_conductance : (w,) float array, W/K
-    wall_area, wall_distance : (w,) float arrays, m2 and m
-    volumes : (n,) float array, m3
-    phase : (n,) int array
-    wall_normal : (w, 3) float array, optional
-        As in `Facets`.
-    radii : (n,) float array, m, optional
-        From here on what only evaluation needs: a network that is solved but not sampled may lack it.
-    periodic : (3,) bool array, optional
-        Axis by axis.
-    area : (m,) float array, m2, optional
-        Of each link's facet, those that conduct, C_t included.
-    distance : (m,) float array, m, optional
-        As in `Facets`; radical cells do without: `link_distances` finds it from the radii.
-    cells : bool
-        Facets bound cells that fill the body, as those of the radical tessellation do: what is linear is exact.
-    stats : dict, optional
-        What a Field says of it: law, calibration (C_t), tessellation_s, network_s and packing, how that was made.
-    whole : bool
-        Links that should conduct do; if not, bodies that no heat passes are looked for though all phases conduct.
-    over : two int arrays, optional
-        Numbers of links, and of wall facets, that join no body: they conduct what a gap lets pass.
+    What `Facets` has, too, is the same here.
     """
 
-    centers: np.ndarray
-    size: np.ndarray
+    centers: np.ndarray  # (n, 3) float array, m
+    size: np.ndarray  # (3,) float array, m
     indptr: np.ndarray
     indices: np.ndarray
     image: np.ndarray
-    conductance: np.ndarray
+    conductance: np.ndarray  # (m,) float array, W/K: H_pq = k S_pq / d_pq, symmetric
     wall_particle: np.ndarray
     wall_side: np.ndarray
-    wall_conductance: np.ndarray
+    wall_conductance: np.ndarray  # (w,) float array, W/K
     wall_area: np.ndarray
     wall_distance: np.ndarray
     volumes: np.ndarray
-    phase: np.ndarray
+    phase: np.ndarray  # (n,) int array
     wall_normal: np.ndarray | None = None
-    radii: np.ndarray | None = None
-    periodic: np.ndarray | None = None
-    area: np.ndarray | None = None
-    distance: np.ndarray | None = None
-    cells: bool = True
+    # From here on what only evaluation needs: a network that is solved but not sampled may lack it.
+    radii: np.ndarray | None = None  # (n,) float array, m
+    periodic: np.ndarray | None = None  # (3,) bool array: Axis by axis
+    area: np.ndarray | None = None  # (m,) float array, m2: Of each link's facet, those that conduct, C_t included
+    distance: np.ndarray | None = None  # Radical cells do without: `link_distances` finds it from the radii
+    cells: bool = True  # Facets bound cells that fill the body, as radical ones do: what is linear is exact
+    # What a Field says of it: law, calibration (C_t), tessellation_s, network_s and packing, how that was made
     stats: dict | None = None
+    # Links that should conduct do; if not, bodies that no heat passes are looked for though all phases conduct
     whole: bool = True
+    # Numbers of links, and of wall facets, that join no body: they conduct what a gap lets pass
     over: tuple[np.ndarray, np.ndarray] | None = None
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.network.base import SIDES
+from demheat.packing.twins.interfaces import fibonacci_sphere
 from demheat.packing.twins.surfaces import circumscribed_volume
 from demheat.scene import ROUND_AXES
 
@@ -59,18 +60,9 @@ def round_wall(domain, size, spacing, *, width=WIDTH):
         normals[:, axes[0]], normals[:, axes[1]] = np.cos(angle), np.sin(angle)
         # A regular polygon about a circle of radius r has the area n r^2 tan(pi/n).
         return RoundWall(normals, radius * float(np.sqrt(np.pi / (sides * np.tan(np.pi / sides)))), middle, across)
-    normals = fibonacci(max(FEWEST_FACES, round(4 * np.pi * (radius / (width * spacing)) ** 2)))
+    normals = fibonacci_sphere(max(FEWEST_FACES, round(4 * np.pi * (radius / (width * spacing)) ** 2)))
     share = 4 * np.pi / 3 / circumscribed_volume(normals)
     return RoundWall(normals, radius * float(np.cbrt(share)), middle, across)
-
-
-def fibonacci(number):
-    """Nearly even directions, (number, 3) float array of unit vectors (spherical Fibonacci lattice)."""
-    index = np.arange(number) + 0.5
-    height = 1.0 - 2.0 * index / number
-    turn = np.pi * (1.0 + np.sqrt(5.0)) * index
-    ring = np.sqrt(1.0 - height**2)
-    return np.column_stack([ring * np.cos(turn), ring * np.sin(turn), height])
 
 
 def round_distances(wall, points, normals):

@@ -33,7 +33,7 @@ def edge_order(scene) -> float:
     if scene.anisotropic:
         return SMOOTH
     parts, k = [part for shape in scene.inclusions for part in shape.parts], scene.mean_conductivities
-    return min((2 * each for each in (*_of_shapes(scene, parts, k), *_of_planes(scene, parts, k))), default=SMOOTH)
+    return min((2 * each for each in (*_of_shapes(scene, parts, k), *_of_planes(parts, k))), default=SMOOTH)
 
 
 def _of_shapes(scene, parts, k):
@@ -53,7 +53,7 @@ def _of_shapes(scene, parts, k):
     return [power(each[:4], each[4:]) for each in found]
 
 
-def _of_planes(scene, parts, k):
+def _of_planes(parts, k):
     """Powers where planes meet walls, which make wedges of them, at an angle of theirs and at its supplement."""
     for plane in (part for part in parts if part.planes() is not None and not part.bounded):
         along = np.abs(plane.planes()[0])

@@ -58,13 +58,7 @@ def touching_spheres(scene) -> tuple[int, int] | None:
 
 
 def contacts(scene) -> list[tuple[int, int]]:
-    """All pairs as `touching_spheres` has them.
-
-    Raises
-    ------
-    ValueError
-        If what touches joins walls of two temperatures, or a periodic cell to its images along the gradient.
-    """
+    """All pairs as `touching_spheres` has them; a ValueError if what touches joins two temperatures."""
     inclusions = enumerate(scene.inclusions)
     ids = [n for n, s in inclusions if s.kind == "sphere" and s.material.perfect and s.resistance == 0]
     ids = np.array(ids, int)

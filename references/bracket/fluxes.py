@@ -9,11 +9,11 @@ balanced flux of least energy (Brezzi, Douglas and Marini 1985; hybrid as by Arn
 from functools import cache
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix
+from scipy.sparse import csr_matrix
 
 from demheat.runtime.progress import stage
 from references.bracket.faces import CORNERS
-from references.fem.elements import shapes
+from references.fem.elements import heat_of, matrix_of, shapes, summed
 from references.fem.quadrature import rule
 from references.mesh import Mesh
 
@@ -90,12 +90,7 @@ def assemble(mesh: Mesh, conductivity, faces, lift, *, degree: int) -> tuple[csr
         for ids in blocks(mesh, conductivity > 0):
             seen += len(ids)
             matrices = answers(masses(mesh, ids, degree=degree) / conductivity[ids, None, None])
-            rows = faces.row[ids]
-            heat = np.einsum("bij,bj->bi", matrices, lift[ids])
-            load -= np.bincount(rows.ravel(), heat.ravel(), count)
-            i, j = (np.broadcast_to(index, matrices.shape).ravel() for index in (rows[:, :, None], rows[:, None, :]))
-            parts.append(coo_matrix((matrices.ravel(), (i, j)), shape=(count, count)).tocsr())
+            load -= heat_of(matrices, faces.row[ids], lift[ids], count)
+            parts.append(matrix_of(matrices, faces.row[ids], count))
             done(seen / len(mesh.cells))
-    while len(parts) > 1:  # pairs of equal size: each entry is copied log2(blocks) times only
-        parts = [parts[i] + parts[i + 1] if i + 1 < len(parts) else parts[i] for i in range(0, len(parts), 2)]
-    return parts[0], load
+    return summed(parts, count), load

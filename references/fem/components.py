@@ -53,14 +53,10 @@ def gathered(scene, mesh, chosen, pairs, jump):
 
 def settle(found: Bodies, scene, mesh, temperature) -> None:
     """Give bodies that no heat passes their temperature, in a periodic cell all bodies their level, in place."""
-    still = np.append(~found.passing, False)[found.node]
+    settle_still(found, scene, temperature)
     if not scene.periodic:
-        level = np.append(found.level, np.nan)[found.node]
-        known = still & np.isfinite(level)
-        temperature[known] = level[known]
         return
     gradient = np.array(scene.gradient)
-    temperature[still] = -found.shift[still] @ (gradient * scene.size)
     total, mass = np.zeros((2, len(found.passing) + 1))
     for ids, points, volumes, values, _ in at_quadrature(mesh, temperature):
         rest = values - points @ gradient
@@ -69,6 +65,17 @@ def settle(found: Bodies, scene, mesh, temperature) -> None:
     mean = total / np.where(mass > 0, mass, 1.0)
     inside = found.node >= 0
     temperature[inside] -= mean[found.node[inside]]
+
+
+def settle_still(found: Bodies, scene, temperature) -> None:
+    """Give nodes of bodies that no heat passes the temperature of a wall, in a periodic cell one without a gradient."""
+    still = np.append(~found.passing, False)[found.node]
+    if scene.periodic:
+        temperature[still] = -found.shift[still] @ (np.array(scene.gradient) * scene.size)
+        return
+    level = np.append(found.level, np.nan)[found.node]
+    known = still & np.isfinite(level)
+    temperature[known] = level[known]
 
 
 def extend(found: Bodies, mesh, temperature) -> None:

@@ -77,13 +77,27 @@ def assemble_loads(mesh, conductivity, dof, lifts, medium=None):
             matrices = _matrices(mesh, ids, rule, conductivity[ids], medium)
             rows = dof[mesh.cells[ids]]
             for load, lift in zip(loads, lifts, strict=True):
-                heat = np.einsum("bij,bj->bi", matrices, lift[mesh.cells[ids]])
-                load -= np.bincount(rows.ravel(), heat.ravel(), count)
-            i, j = (np.broadcast_to(index, matrices.shape).ravel() for index in (rows[:, :, None], rows[:, None, :]))
-            parts.append(coo_matrix((matrices.ravel(), (i, j)), shape=(count, count)).tocsr())
-    while len(parts) > 1:  # pairs of equal size: each entry is copied log2(blocks) times only
+                load -= heat_of(matrices, rows, lift[mesh.cells[ids]], count)
+            parts.append(matrix_of(matrices, rows, count))
+    return summed(parts, count), list(loads)
+
+
+def matrix_of(matrices, rows, count) -> csr_matrix:
+    """The (count, count) matrix that those of elements, (b, n, n), add up to, by the rows of their nodes, (b, n)."""
+    i, j = (np.broadcast_to(index, matrices.shape).ravel() for index in (rows[:, :, None], rows[:, None, :]))
+    return coo_matrix((matrices.ravel(), (i, j)), shape=(count, count)).tocsr()
+
+
+def heat_of(matrices, rows, values, count):
+    """Matrices of elements times values at their nodes, (b, n), summed over rows, (count,) float array."""
+    return np.bincount(rows.ravel(), np.einsum("bij,bj->bi", matrices, values).ravel(), count)
+
+
+def summed(parts, count) -> csr_matrix:
+    """Sum of matrices, in pairs of equal size: each entry is copied log2(parts) times only."""
+    while len(parts) > 1:
         parts = [parts[i] + parts[i + 1] if i + 1 < len(parts) else parts[i] for i in range(0, len(parts), 2)]
-    return parts[0] if parts else csr_matrix((count, count)), list(loads)
+    return parts[0] if parts else csr_matrix((count, count))
 
 
 def _matrices(mesh, ids, rule, conductivity, medium):
@@ -98,11 +112,16 @@ def _matrices(mesh, ids, rule, conductivity, medium):
 
 def wall_weights(mesh, triangles):
     """Integral of each node's shape function over triangles."""
-    X, weights = get_quadrature(RefTri, 5)
+    values, areas = at_points(mesh, triangles, 5)
+    return np.bincount(triangles.ravel(), (areas @ values).ravel(), len(mesh.points))
+
+
+def at_points(mesh, triangles, degree):
+    """Shape functions at the points of a rule on triangles, (q, n), and their shares of the area, (t, q), m2."""
+    X, weights = get_quadrature(RefTri, degree)
     values, slopes = shapes(triangles.shape[1], X)
     tangents = np.einsum("tnx,qnk->tqkx", mesh.points[triangles], slopes, optimize=True)
-    area = np.linalg.norm(np.cross(tangents[..., 0, :], tangents[..., 1, :]), axis=-1) * weights
-    return np.bincount(triangles.ravel(), (area @ values).ravel(), len(mesh.points))
+    return values, np.linalg.norm(np.cross(tangents[..., 0, :], tangents[..., 1, :]), axis=-1) * weights
 
 
 def at_quadrature(mesh, temperature, degree=5, straight=None):

@@ -12,15 +12,14 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix, diags
+from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from demheat.field import Field
-from demheat.runtime.progress import stage
 from demheat.splitting import Splitting, by_splitting
 from references.fem import components
 from references.fem.bricks import Bricks, bricks, nodes_of, stiffness, wall_nodes
-from references.fem.multigrid import conjugate_gradients, multigrid
+from references.fem.multigrid import solve_free
 from references.fem.system import known_part
 
 # Corners of a brick on its node with the least coordinates; of a wall's rectangle.
@@ -207,24 +206,10 @@ def _corrected(matrix, loads, held, grid, how):
     home = np.arange(len(load))
     home[grid.pairs[:, 0]] = grid.pairs[:, 1]
     load = np.bincount(home, load, len(load))
-    tied = kept["tied"] if kept.get("free") is not None else _tied(matrix, home)
-    fixed = _pinned(tied, held, imposed, grid.points)
-    free = np.flatnonzero(~fixed & (tied.diagonal() > 0))
-    if not np.array_equal(kept.get("free"), free):
-        kept |= {"tied": tied, "free": free, "equations": _equations(tied, free)}
-    stats = {"unknowns": len(free), "iterations": 0, "residual": 0.0}
-    correction = np.zeros(len(load))
-    A, scale, precondition = kept["equations"]
-    b = scale @ load[free]
-    if b.any():
-        with stage("equations") as done:
-            x, stats["iterations"], stats["residual"] = conjugate_gradients(A, b, precondition, tolerance, done)
-        if not stats["residual"] <= tolerance:
-            raise RuntimeError(
-                f"finite elements: residual {stats['residual']:.2e} > tolerance {tolerance:.2e} after "
-                f"{stats['iterations']} iterations on {len(free)} unknowns"
-            )
-        correction[free] = scale @ x
+    if kept.get("free") is None:
+        kept["tied"] = _tied(matrix, home)
+    fixed = _pinned(kept["tied"], held, imposed, grid.points)
+    correction, stats = solve_free(grid, kept["tied"], load, fixed, home, tolerance, kept=kept)
     return correction[home], stats
 
 
@@ -255,24 +240,12 @@ def _pinned(matrix, held, imposed, points):
     return fixed
 
 
-def _equations(matrix, free):
-    """The free nodes' equations scaled to a unit diagonal, their scale, and one cycle of multigrid."""
-    root = np.sqrt(matrix.diagonal()[free])
-    scale = diags(1 / root)
-    A = (scale @ matrix[free][:, free] @ scale).tocsr()
-    return A, scale, multigrid(A, root) if len(free) else None
-
-
 def _settled(found, scene, grid, temperature):
     """Give bodies that no heat passes their temperature, in place; bricks that none reaches."""
-    still = np.append(~found.passing, False)[found.node]
+    components.settle_still(found, scene, temperature)
     if not scene.periodic:
-        level = np.append(found.level, np.nan)[found.node]
-        known = still & np.isfinite(level)
-        temperature[known] = level[known]
         return np.append(~found.passing & np.isnan(found.level), False)[found.element].reshape(grid.shape)
     gradient = np.array(scene.gradient)
-    temperature[still] = -found.shift[still] @ (gradient * scene.size)
     # Trilinear: the mean over a brick is that of its corners.
     rest = (temperature - grid.points @ gradient)[grid.cells].mean(axis=1)
     inside, bodies = found.element >= 0, len(found.passing)

@@ -4,11 +4,9 @@ With [T] the jump across the interface its share of the weak form is the integra
 """
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix
-from skfem.quadrature import get_quadrature
-from skfem.refdom import RefTri
+from scipy.sparse import csr_matrix
 
-from references.fem.elements import shapes
+from references.fem.elements import at_points, matrix_of
 
 # Exact for products of two quadratics on plane triangles; on curved ones, whose area is no polynomial, as good as that
 # of the volumes beside them.
@@ -22,8 +20,7 @@ def exchange(mesh, dof) -> csr_matrix:
     one = (parts @ products).reshape(len(parts), values.shape[1], -1)
     blocks = np.block([[one, -one], [-one, one]])
     rows = dof[mesh.faces.nodes.reshape(len(parts), -1)]
-    i, j = (np.broadcast_to(index, blocks.shape).ravel() for index in (rows[:, :, None], rows[:, None, :]))
-    return coo_matrix((blocks.ravel(), (i, j)), shape=(len(mesh.points),) * 2).tocsr()
+    return matrix_of(blocks, rows, len(mesh.points))
 
 
 def power(mesh, temperature, gradient) -> float:
@@ -36,12 +33,8 @@ def power(mesh, temperature, gradient) -> float:
 
 def _parts(mesh):
     """Shape functions at points of triangles, (q, k), and area over resistance there, (t, q) float array, W/K."""
-    here = mesh.faces.nodes[:, 0]
-    X, weights = get_quadrature(RefTri, DEGREE)
-    values, slopes = shapes(here.shape[1], X)
-    tangents = np.einsum("tnx,qnk->tqkx", mesh.points[here], slopes, optimize=True)
-    area = np.linalg.norm(np.cross(tangents[..., 0, :], tangents[..., 1, :]), axis=-1) * weights
-    return values, area / mesh.faces.resistance[:, None]
+    values, areas = at_points(mesh, mesh.faces.nodes[:, 0], DEGREE)
+    return values, areas / mesh.faces.resistance[:, None]
 
 
 def passed(mesh, dof, rest) -> np.ndarray:

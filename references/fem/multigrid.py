@@ -106,8 +106,8 @@ def _cycle(levels, b, number=0):
 
 
 def prolongation(mesh, free, dof):
-    """From corners to all free nodes: a middle is the mean of its edge's ends."""
-    if mesh.cells.shape[1] == 4:
+    """From corners to all free nodes: a middle is the mean of its edge's ends; None where no element has middles."""
+    if mesh.cells.shape[1] != 10:
         return None
     count = len(dof)
     ends = np.repeat(np.arange(count)[:, None], 2, axis=1)

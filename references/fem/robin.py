@@ -7,12 +7,10 @@ condition is in any textbook); radiation is linearised at the points of the same
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix
-from skfem.quadrature import get_quadrature
-from skfem.refdom import RefTri
+from scipy.sparse import csr_matrix
 
 from demheat.scene import STEFAN_BOLTZMANN, Convection, Radiation
-from references.fem.elements import shapes
+from references.fem.elements import at_points, matrix_of
 
 # Of the quadrature: fourth powers of quadratic temperatures times shape functions are of degree ten, but smooth.
 DEGREE = 8
@@ -38,17 +36,12 @@ class Surface(NamedTuple):
         """Integrals of a coefficient times products of two shape functions, (n, n) CSR matrix."""
         products = (self.values[:, :, None] * self.values[:, None, :]).reshape(len(self.values), -1)
         blocks = ((self.areas * coefficient) @ products).reshape(-1, *(self.nodes.shape[1],) * 2)
-        i, j = (np.broadcast_to(x, blocks.shape).ravel() for x in (self.nodes[:, :, None], self.nodes[:, None, :]))
-        return coo_matrix((blocks.ravel(), (i, j)), shape=(self.count,) * 2).tocsr()
+        return matrix_of(blocks, self.nodes, self.count)
 
 
 def on_triangles(mesh, triangles) -> Surface:
     """`Surface` of triangles of a mesh."""
-    X, weights = get_quadrature(RefTri, DEGREE)
-    values, slopes = shapes(triangles.shape[1], X)
-    tangents = np.einsum("tnx,qnk->tqkx", mesh.points[triangles], slopes, optimize=True)
-    areas = np.linalg.norm(np.cross(tangents[..., 0, :], tangents[..., 1, :]), axis=-1) * weights
-    return Surface(triangles.astype(np.int64), values, areas, len(mesh.points))
+    return Surface(triangles.astype(np.int64), *at_points(mesh, triangles, DEGREE), len(mesh.points))
 
 
 class RobinWalls:

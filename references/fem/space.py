@@ -6,12 +6,12 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix
+from scipy.sparse import csr_matrix
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
 from references.fem import interfaces
-from references.fem.elements import BLOCK, assemble, gradients, shapes, wall_weights
+from references.fem.elements import BLOCK, assemble, gradients, matrix_of, shapes, wall_weights
 from references.fem.lookup import LOST, NodalField
 from references.fem.multigrid import prolongation
 from references.fem.robin import on_triangles
@@ -113,8 +113,6 @@ def _mass(mesh, capacity):
             ids = chosen[start : start + BLOCK]
             parts = gradients(mesh, ids, (X, weights))[1] if curved else 6 * mesh.volumes[ids, None] * weights
             cells, blocks = mesh.cells[ids], (capacity[ids, None] * parts) @ products
-            shape = (len(ids), nodes, nodes)
-            i, j = (np.broadcast_to(index, shape).ravel() for index in (cells[:, :, None], cells[:, None, :]))
-            total = total + coo_matrix((blocks.ravel(), (i, j)), shape=(count, count)).tocsr()
+            total = total + matrix_of(blocks.reshape(len(ids), nodes, nodes), cells, count)
             volumes += np.bincount(cells.ravel(), (parts @ values).ravel(), count)
     return total, volumes

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from demheat.scene import WALLS, Shape, check_scene
+from demheat.scene import Shape, check_scene
 from demheat.scene.inputs import finite, flag
-from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
+from references.mesh.cells import MATCH, check, finished
 from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up, session, tetrahedra
 from references.mesh.lattice import make_lattice
 from references.mesh.size_table import table
@@ -69,16 +69,8 @@ class _Geometry(NamedTuple):
 def _attempt(scene, sizes, elements, done):
     """One try: geometry, mesh, arrays, checks."""
     geometry = _Geometry(scene.images(), scene.size, scene.periodic)
-    scale, box = geometry.scale, geometry.box
     points, cells, phase = call_gmsh(_tetrahedra, geometry, sizes, elements, cells=elements.estimated, done=done)
-    pairs = snap(points, box, scene.periodic)
-    straightened, jacobian = straighten(points, cells, pairs) if elements.quadratic else (0, 1.0)
-    volumes, curves = volumes_of(points[cells]) * scale**3, bent(points[cells])
-    walls = {name: wall(points, cells, box, name) for name in WALLS}
-    stats = {"straightened": straightened, "jacobian": jacobian}
-    # Exactly on the faces in metres too, whatever the rounding of the scale.
-    metres = np.where(points == box, scene.size, points * scale)
-    mesh = Mesh(metres, cells, phase, volumes, curves, walls, pairs, stats)
+    mesh = finished(scene, points, cells, phase, elements.quadratic)
     check(scene, mesh)
     return mesh
 

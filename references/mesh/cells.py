@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
+from demheat.scene import WALLS
+
 # Unit lengths. Nodes this close to a face lie on it (found: they are 1e-15 off, or on spheres at least `NARROWEST`).
 SNAP = 1e-9
 # Nodes and surfaces this close after the periodic shift are twins (OpenCASCADE's own tolerance is 1e-7).
@@ -150,6 +152,20 @@ def volumes_of(nodes):
         return jacobian_coefficients(nodes).mean(axis=1) / 6
     a, b, c = (nodes[:, k] - nodes[:, 0] for k in (1, 2, 3))
     return np.einsum("mi,mi->m", a, np.cross(b, c)) / 6
+
+
+def finished(scene, points, cells, phase, quadratic) -> Mesh:
+    """The mesh of nodes in unit lengths, which are put onto the faces in place; its phases are not checked."""
+    scale = max(scene.size)
+    box = np.array(scene.size) / scale
+    pairs = snap(points, box, scene.periodic)
+    straightened, jacobian = straighten(points, cells, pairs) if quadratic else (0, 1.0)
+    volumes, curves = volumes_of(points[cells]) * scale**3, bent(points[cells])
+    walls = {name: wall(points, cells, box, name) for name in WALLS}
+    stats = {"straightened": straightened, "jacobian": jacobian}
+    # Exactly on the faces in metres too, whatever the rounding of the scale.
+    metres = np.where(points == box, scene.size, points * scale)
+    return Mesh(metres, cells, phase, volumes, curves, walls, pairs, stats)
 
 
 def check(scene, mesh):

@@ -10,9 +10,8 @@ from functools import partial
 import numpy as np
 
 from demheat.runtime.progress import stage
-from demheat.scene import WALLS
 from demheat.scene.volumes import sampled_fractions
-from references.mesh.cells import EDGE_COLUMN, Mesh, bent, check, snap, straighten, triangles_on, volumes_of, wall
+from references.mesh.cells import EDGE_COLUMN, check, finished, triangles_on, volumes_of
 from references.mesh.cut import EDGES, Cells, crossing, cut, faces_of
 
 # Sides of the lattice's cubes over the size asked for: 12 tetrahedra each, as many as gmsh makes of that size.
@@ -47,16 +46,10 @@ def _made(scene, size, quadratic, curved, done):
     points, cells = body.points[used], corners.reshape(-1, 4).astype(np.int32)
     if quadratic:
         points, cells = _with_middles(body, points, cells, holds if curved else [])
-    pairs = snap(points, box, scene.periodic)
-    straightened, jacobian = straighten(points, cells, pairs) if quadratic else (0, 1.0)
-    volumes, curves = volumes_of(points[cells]) * scale**3, bent(points[cells])
-    walls = {name: wall(points, cells, box, name) for name in WALLS}
-    stats = {"straightened": straightened, "jacobian": jacobian, "cubes": int(counts.min())}
-    metres = np.where(points == box, scene.size, points * scale)
-    mesh = Mesh(metres, cells, body.phase.astype(np.int32), volumes, curves, walls, pairs, stats)
+    mesh = finished(scene, points, cells, body.phase.astype(np.int32), quadratic)
     _check_volumes(scene, mesh, size)
     check(scene, mesh)
-    return mesh
+    return mesh._replace(stats=mesh.stats | {"cubes": int(counts.min())})
 
 
 def _holds(shape, scale, period, points):

@@ -21,19 +21,13 @@ class Balls(NamedTuple):
 
 
 class Windows(NamedTuple):
-    """Pieces of spheres with the voxels that each may fill or cut, as kernels read them.
+    """Pieces of spheres with the voxels that each may fill or cut, as kernels read them."""
 
-    Attributes
-    ----------
-    number, center, radius
-        As in `Balls`, of the sphere that each is a piece of.
-    low, high : (n, 3) int64 array
-        Voxels to look at, low <= index < high.
-    """
-
+    # number, center, radius: As in `Balls`, of the sphere that each is a piece of
     number: np.ndarray
     center: np.ndarray
     radius: np.ndarray
+    # low, high: (n, 3) int64 arrays: Voxels to look at, low <= index < high
     low: np.ndarray
     high: np.ndarray
 

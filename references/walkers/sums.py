@@ -36,17 +36,10 @@ def over_lags(one: np.ndarray, other: np.ndarray, lags: tuple[int, ...]) -> np.n
 def products(steps: list[np.ndarray], squares: tuple, drift: np.ndarray, lags: tuple[int, ...]) -> np.ndarray:
     """What each walker says, (lags, n, 6) float array: X X, and five sums whose mean is 0, as means over directions.
 
-    Parameters
-    ----------
-    steps : three (m, n, d) float arrays, m
-    squares : three float arrays, m2
-        Mean squares of M, (n,), of M R and of R R, (n, d).
-    drift : (n,) float array
-        Mean of X R: twice the time, over the mean capacity.
-    lags : tuple of int
-        Longest ones that are counted, ascending.
+    `squares` are means of M M, (n,), of M R and of R R, (n, d), m2; `drift`, (n,), is that of X R: twice the time over
+    the mean capacity.
     """
-    x, leaps, resisted = steps
+    x, leaps, resisted = steps  # (m, n, d) float arrays, m
     xx = over_lags(x, x, lags)
     sums = [
         xx,

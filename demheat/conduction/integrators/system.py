@@ -33,10 +33,7 @@ class System(NamedTuple):
     capacity: np.ndarray  # (N,) float array, J/K: Zero for held nodes
     inverse: np.ndarray  # (N,) float array, K/J: 1 / capacity, zero for held nodes
     diagonal: np.ndarray  # (N,) float array, W/K: Sum of each row's conductances
-    # held, held_side: (k,) int arrays: Nodes with imposed temperatures, surroundings among them, and the side that
-    # imposes each
-    held: np.ndarray
-    held_side: np.ndarray
+    held: np.ndarray  # (k,) int array: Nodes with imposed temperatures, surroundings among them
     ties: kernels.Ties  # Ties: The links from free particles to held nodes once more
     held_at: Callable  # callable (time, s) -> (k,) float array, K
     # callable (time, s) -> (N,) float array, W, and (8,) float array, W: Imposed fluxes and sources: into each node,
@@ -90,7 +87,6 @@ def semi_discrete(network, scene, capacity, *, power=None, held_centers=None, le
         inverse=inverse,
         diagonal=_diagonal(links, capacity),
         held=held,
-        held_side=sides,
         ties=_ties(links, side_of),
         held_at=_held_at(scene, sides, level),
         heat_at=_heat_at(network, scene, capacity > 0, power),

@@ -12,24 +12,13 @@ FEWEST = 4
 
 
 class Contacts(NamedTuple):
-    """Contacts of particles with each other and with walls, as compressed rows.
+    """Contacts of particles with each other and with walls, as compressed rows."""
 
-    Attributes
-    ----------
-    indptr : (n + 1,) int64 array
-    indices : (nnz,) uint32 array
-    vectors : (nnz, 3) float array
-        Unit vector of each contact, from the particle of the row to the other.
-    wall_indptr : (n + 1,) int64 array
-    wall_vectors : (m, 3) float array
-        Unit vectors towards walls.
-    """
-
-    indptr: np.ndarray
-    indices: np.ndarray
-    vectors: np.ndarray
-    wall_indptr: np.ndarray
-    wall_vectors: np.ndarray
+    indptr: np.ndarray  # (n + 1,) int64 array
+    indices: np.ndarray  # (nnz,) uint32 array
+    vectors: np.ndarray  # (nnz, 3) float array: Unit vector of each, from the particle of the row to the other
+    wall_indptr: np.ndarray  # (n + 1,) int64 array
+    wall_vectors: np.ndarray  # (m, 3) float array: Unit vectors towards walls
 
 
 @njit(parallel=True, cache=True)

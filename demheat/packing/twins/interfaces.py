@@ -39,43 +39,21 @@ class SphereSurface(NamedTuple):
         return self.shape.ball()
 
     def pattern(self, spacing, rng):
-        """Evenly spread points and outward normals, both (k, 3) float arrays.
-
-        Parameters
-        ----------
-        spacing : float, m
-        rng : numpy Generator
-            Turns the pattern.
-        """
+        """Evenly spread points and outward normals, both (k, 3) float arrays, m and 1."""
         center, radius = self.ball()
         count = int(pattern_count(radius, spacing))
         normals = Rotation.random(random_state=rng).apply(fibonacci_sphere(count))
         return center + radius * normals, normals
 
     def touched(self, points, normals):
-        """The points moved inwards, onto the polyhedron of the sphere's volume with their tangent planes as facets.
-
-        Parameters
-        ----------
-        points : (k, 3) float array, m
-        normals : (k, 3) float array
-
-        Returns
-        -------
-        (k, 3) float array, m
-        """
+        """The points moved inwards, onto the polyhedron of the sphere's volume with their tangent planes as facets."""
         if len(normals) == 0:
             return points
         center, radius = self.ball()
         return center + self.inner_radius(normals) * radius * normals
 
     def inner_radius(self, normals):
-        """Distance of those tangent planes from the centre over the radius.
-
-        Parameters
-        ----------
-        normals : (k, 3) float array
-        """
+        """Distance of those tangent planes from the centre over the radius."""
         return inscribed_radius(normals, counted=None if self.scene.periodic else self._in_box)
 
     def _in_box(self, directions):
@@ -85,18 +63,7 @@ class SphereSurface(NamedTuple):
         return np.all((points > 0) & (points < self.scene.size), axis=1)
 
     def gap(self, points, *, skip_self=False):
-        """Distance of points to the surface, its periodic images included.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        skip_self : bool
-            The points are its own: their distance to its images only.
-
-        Returns
-        -------
-        (n,) float array, m
-        """
+        """Distance of points to the surface and its periodic images, m; of its own points, if so, to these alone."""
         if not skip_self:
             return np.abs(self.shape.distance(points, period=self.scene.period))
         nearest = np.full(len(points), np.inf)
@@ -278,7 +245,7 @@ def pattern_count(radius, spacing):
 
 
 def fibonacci_sphere(count):
-    """Evenly spread unit vectors, (count, 3) float array."""
+    """Nearly even directions, (count, 3) float array of unit vectors (spherical Fibonacci lattice)."""
     k = np.arange(count) + 0.5
     z = 1.0 - 2.0 * k / count
     azimuth = np.pi * (1.0 + np.sqrt(5.0)) * k

@@ -33,7 +33,7 @@ def patterns(interfaces, radius, seed, tally, gap_spacing):
     """Touch points on all surfaces of a scene, chunk by chunk."""
     turns, leads = _Turns(seed), interfaces.stacks.leads()
     usual = np.minimum(interfaces.stacks.spacing, SPACING * radius)
-    wanted = partial(_spacing, interfaces, radius, gap_spacing, usual)
+    wanted = partial(_spacing, interfaces, radius, gap_spacing)
     for numbers in _chunks(interfaces.spheres, np.flatnonzero(leads[: len(interfaces.spheres)]), radius):
         found = _on_spheres(numbers, interfaces, radius, turns, tally, usual, wanted)
         columns = [np.concatenate(column) for column in zip(found, *_columns(interfaces, found), strict=True)]
@@ -230,7 +230,7 @@ def _inside(scene, points, normals, own):
     return points[good], normals[good], own[good]
 
 
-def _spacing(interfaces, radius, gap_spacing, usual, points, normals, own):
+def _spacing(interfaces, radius, gap_spacing, points, normals, own):
     """Distance between twins at points of surfaces: no more than the width of the narrowest gap at a column asks."""
     width = interfaces.width(points, normals, own)
     for there, *others in interfaces.columns(points, normals, own):

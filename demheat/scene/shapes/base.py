@@ -36,10 +36,13 @@ class Shape(ABC):
     - `distance` and `normal` of (n, 3) points, `bounds`, `volume` and `turned`, as described below;
     - if heat may meet a resistance on its surface, the field `resistance`, by keyword, see `check_resistance`.
 
-    Points on the surface count as inside. Where a `period` is given, the shape is repeated at whole multiples of it
-    along each axis and the nearest image counts, which is that of the centre in shapes no larger than the period
-    (`nearest`). `Solid` supplies most of it. That is enough for phases, voxels by any rule, links cut at the surface
-    and facets of the DEM on it. What a shape may supply besides, or where it has something sharper or faster:
+    Points, (n, 3) float arrays in metres, on the surface count as inside. Where the `period` of a periodic cell is
+    given, (3,) in metres, the shape is repeated at whole multiples of it along each axis and the nearest image counts,
+    which is that of the centre in shapes no larger than the period (`nearest`). A `size` is that of the scene's box,
+    three lengths in metres; where it may be None, what lies beyond a box with walls need not count.
+
+    `Solid` supplies most of it. That is enough for phases, voxels by any rule, links cut at the surface and facets of
+    the DEM on it. What a shape may supply besides, or where it has something sharper or faster:
 
     - `cad`, for finite elements, which cut others out of a lattice; `stored`, for scene files, which hold none
       without it;
@@ -92,33 +95,13 @@ class Shape(ABC):
 
     @abstractmethod
     def distance(self, points: ArrayLike, *, period: np.ndarray | None = None) -> np.ndarray:
-        """Distance of points to the surface, negative inside.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        period : (3,) float array, m, optional
-            Of a periodic cell.
-
-        Returns
-        -------
-        (n,) float array, m
-        """
+        """Distance of points to the surface, negative inside, (n,) float array, m."""
 
     @abstractmethod
     def normal(self, points: ArrayLike, *, period: np.ndarray | None = None) -> np.ndarray:
-        """Outward normal of the surface where it is nearest to points, the gradient of `distance`.
+        """Outward normal of the surface where it is nearest to points, the gradient of `distance`, (n, 3) float array.
 
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        period : (3,) float array, m, optional
-            Of a periodic cell.
-
-        Returns
-        -------
-        (n, 3) float array
-            Of length 1; any of the nearest ones where there are several.
+        Of length 1; any of the nearest ones where there are several.
         """
 
     @abstractmethod
@@ -178,17 +161,9 @@ class Shape(ABC):
         return bool(np.all((high > 0) & (low < size)))
 
     def images(self, size: Sequence[float], *, periodic: bool) -> list[Shape]:
-        """The shape as it meets a box; of spheres, all at once, the same in `references.voxels.spheres.images`.
+        """The shape as it meets a box; in a periodic cell all its images, that of the centre in the box first.
 
-        Parameters
-        ----------
-        size : (3,) sequence of float, m
-        periodic : bool
-            If so its images count, that of the centre in the box first.
-
-        Returns
-        -------
-        list of Shape
+        Of spheres, all at once, the same in `references.voxels.spheres.images`.
         """
         if not periodic:
             return [self] if self.meets(size) else []
@@ -204,40 +179,16 @@ class Shape(ABC):
         return found
 
     def placed(self, center: Sequence[float]) -> Shape:
-        """The same shape with its centre elsewhere.
-
-        Parameters
-        ----------
-        center : (3,) sequence of float, m
-        """
+        """The same shape with its centre elsewhere, m."""
         return replace(self, center=tuple(center))
 
     def point_in(self, size: Sequence[float], *, periodic: bool) -> np.ndarray:
-        """A point of the box that lies inside, (3,) float array, m.
-
-        Parameters
-        ----------
-        size : (3,) sequence of float, m
-        periodic : bool
-            Whether images count.
-        """
+        """A point of the box that lies inside, or in an image if it is periodic, (3,) float array, m."""
         center, box = np.array(self.center), np.array(size)
         return center % box if periodic else np.clip(center, 0.0, box)
 
     def volume_in(self, size: Sequence[float], *, periodic: bool) -> float:
-        """Volume of the part in a box, m3.
-
-        Parameters
-        ----------
-        size : (3,) sequence of float, m
-        periodic : bool
-            If so all of it lies in the box, if not in one image then in another.
-
-        Raises
-        ------
-        NotImplementedError
-            If a wall cuts it.
-        """
+        """Volume of the part in a box, m3: all of it in a periodic one; NotImplementedError if a wall cuts it."""
         low, high = self.bounds()
         slack = TOUCH * max(size)
         if not periodic and np.any((low < -slack) | (high > np.array(size) + slack)):
@@ -245,64 +196,22 @@ class Shape(ABC):
         return self.volume
 
     def surface(self, points: ArrayLike, *, period: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """`distance` and `normal` of points, at once where that is faster.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        period : (3,) float array, m, optional
-            Of a periodic cell.
-
-        Returns
-        -------
-        distance : (n,) float array, m
-        normal : (n, 3) float array
-        """
+        """`distance` and `normal` of points, at once where that is faster."""
         return self.distance(points, period=period), self.normal(points, period=period)
 
     def sure_distance(self, points: ArrayLike, *, period: np.ndarray | None = None) -> np.ndarray:
-        """Distance that a point surely has to the surface at least, outside; inside less than 0 where that is exact.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        period : (3,) float array, m, optional
-            Of a periodic cell.
-
-        Returns
-        -------
-        (n,) float array, m
-        """
+        """Distance that a point surely has to the surface at least, outside; inside less than 0 where that is exact."""
         return self.distance(points, period=period)
 
     def reach(self, direction: np.ndarray, size: Sequence[float] | None = None) -> float:
-        """How far it reaches along a direction: direction . x is no more in any of its points, m.
-
-        Parameters
-        ----------
-        direction : (3,) float array
-        size : (3,) sequence of float, m, optional
-            Of a box with walls: what lies beyond need not count.
-        """
+        """How far it reaches along a direction, (3,): direction . x is no more in any of its points, m."""
         low, high = self._clipped(size)
         with np.errstate(invalid="ignore"):
             parts = np.maximum(direction * low, direction * high)
         return float(np.where(direction == 0, 0.0, parts).sum())
 
     def hull(self, size: Sequence[float] | None = None) -> tuple[np.ndarray, float] | None:
-        """Balls of one radius whose convex hull holds it.
-
-        Parameters
-        ----------
-        size : (3,) sequence of float, m, optional
-            Of a box with walls: what lies beyond need not count.
-
-        Returns
-        -------
-        centres : (m, 3) float array, m
-        radius : float, m
-            None in place of both where it has no end.
-        """
+        """Balls of one radius whose convex hull holds it: centres, (m, 3), and radius, m; None where it has no end."""
         low, high = self._clipped(size)
         if not (np.all(np.isfinite(low)) and np.all(np.isfinite(high))):
             return None
@@ -313,16 +222,9 @@ class Shape(ABC):
         return None
 
     def edges(self, size: Sequence[float]) -> np.ndarray:
-        """Points in the four quadrants around its sharp edges, `ALONG` for each; none where it is smooth all over.
+        """Points in the four quadrants around its sharp edges, `ALONG` for each, (n, 4, 3) float array, m.
 
-        Parameters
-        ----------
-        size : (3,) sequence of float, m
-            Of the scene's box: points lie `BESIDE` of the shortest length from the edge.
-
-        Returns
-        -------
-        (n, 4, 3) float array, m
+        They lie `BESIDE` of the shortest length from the edge; none where it is smooth all over.
         """
         return np.empty((0, 4, 3))
 
@@ -349,39 +251,19 @@ class Shape(ABC):
         return points if self.planes() is not None else level(self, points, normals, room)
 
     def cad(self, occ, box: np.ndarray, scale: float) -> int:
-        """Add it to a geometry of OpenCASCADE, and give the tag of its volume.
+        """Add it to a geometry of OpenCASCADE (`gmsh.model.occ`), and give the tag of its volume.
 
-        Parameters
-        ----------
-        occ : gmsh.model.occ
-        box : (3,) float array
-            Edges of the scene's box over the scale: of what goes on beyond only that part need be right.
-        scale : float, m
-            By which lengths are divided.
+        Lengths are divided by the scale, m, those of the scene's box are already: of what goes on beyond that only the
+        part within need be right.
         """
         raise NotImplementedError(f"a {self.kind} has no volume of OpenCASCADE")
 
     def encloses(self, other: Shape, shift: np.ndarray) -> bool:
-        """Whether it surely holds another shape, by what both know of their own kind.
-
-        Parameters
-        ----------
-        other : Shape
-        shift : (3,) float array, m
-            By which the other is moved first.
-        """
+        """Whether it surely holds another shape, first moved by a shift, m, by what both know of their own kind."""
         return False
 
     def check_fit(self, name: str, size: Sequence[float], *, periodic: bool) -> None:
-        """Raise ValueError unless it can lie in a box, but for its width, for which its bounds are looked at.
-
-        Parameters
-        ----------
-        name : str
-            For the message.
-        size : (3,) sequence of float, m
-        periodic : bool
-        """
+        """Raise ValueError, by a name, unless it can lie in a box, but for its width: its bounds are looked at."""
         return
 
     def _clipped(self, size):

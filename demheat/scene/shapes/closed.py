@@ -18,7 +18,7 @@ def closed(name: str, vertices, triangles) -> Triangles:
     if not len(triangles):
         raise ValueError(f"{name}: no triangle has an area; must be a closed surface")
     beside, against = _neighbours(name, vertices, triangles)
-    piece, turned = _turns(name, vertices, triangles, beside, against)
+    piece, turned = _turns(name, triangles, beside, against)
     triangles[turned] = triangles[turned][:, ::-1]
     _check_crossing(name, vertices, triangles)
     used, triangles = np.unique(triangles, return_inverse=True)
@@ -53,7 +53,7 @@ def _neighbours(name, vertices, triangles):
     return beside.reshape(-1, 3), against.reshape(-1, 3)
 
 
-def _turns(name, vertices, triangles, beside, against):
+def _turns(name, triangles, beside, against):
     """Piece of each triangle, and whether it looks the other way than the first of its piece."""
     piece, turned = np.full(len(triangles), -1), np.zeros(len(triangles), bool)
     for first in range(len(triangles)):

@@ -180,12 +180,6 @@ class Ellipsoid(Solid):
         length = np.linalg.norm(normal, axis=1)
         return unit * t * length, normal / length[:, None] @ np.array(self.rotation).T
 
-    def _distance(self, offsets):
-        return self._surface(offsets)[0]
-
-    def _normal(self, offsets):
-        return self._surface(offsets)[1]
-
 
 def lengths(name: str, value) -> tuple[float, float, float]:
     """Three lengths above 0, or a ValueError."""

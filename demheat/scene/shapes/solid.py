@@ -1,6 +1,5 @@
 """What shapes in unbounded space have in common: repeats in periodic cells, parts in boxes with walls."""
 
-from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import fields
 from itertools import product
@@ -15,20 +14,27 @@ ROUNDS = 200
 
 
 class Solid(Shape):
-    """A shape known by offsets from its `center`: what it supplies are `_distance`, `_normal` and `bounds`.
+    """A shape known by offsets from its `center`: it supplies `bounds`, and `_distance` and `_normal`, or `_surface`.
 
     Its bounds lie symmetrically about the centre; where they are infinite it goes on without end, and has no images.
     """
 
     overhangs = True
 
-    @abstractmethod
+    def __init_subclass__(cls, **knobs):
+        """Refuse a class that supplies neither."""
+        super().__init_subclass__(**knobs)
+        supplied = {name for name in ("_distance", "_normal", "_surface") if getattr(cls, name) != getattr(Solid, name)}
+        if not supplied >= {"_distance", "_normal"} and "_surface" not in supplied:
+            raise TypeError(f"class {cls.__name__}: must supply _distance and _normal, or _surface")
+
     def _distance(self, offsets: np.ndarray) -> np.ndarray:
         """Distance to the surface, negative inside, of (n, 3) offsets from the centre, m."""
+        return self._surface(offsets)[0]
 
-    @abstractmethod
     def _normal(self, offsets: np.ndarray) -> np.ndarray:
         """Gradient of `_distance`, of length 1."""
+        return self._surface(offsets)[1]
 
     def _surface(self, offsets):
         return self._distance(offsets), self._normal(offsets)

@@ -237,9 +237,3 @@ class SurfaceMesh(Solid):
         near = away <= ON * np.linalg.norm(self._body.vertices.max(axis=0))
         normal = np.divide(out, away[:, None], out=np.zeros_like(out), where=~near[:, None])
         return sign * away, np.where(near[:, None], self._body.normals[triangle], normal)
-
-    def _distance(self, offsets):
-        return self._surface(offsets)[0]
-
-    def _normal(self, offsets):
-        return self._surface(offsets)[1]

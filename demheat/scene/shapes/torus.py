@@ -148,9 +148,3 @@ class Torus(Solid):
         rest = (away - self.radius)[:, None] * out + along[:, None] * axis
         normal = np.divide(rest, length[:, None], out=np.tile(axis, (len(offsets), 1)), where=length[:, None] > 0)
         return length - self.tube, normal
-
-    def _distance(self, offsets):
-        return self._surface(offsets)[0]
-
-    def _normal(self, offsets):
-        return self._surface(offsets)[1]

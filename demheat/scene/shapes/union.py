@@ -297,12 +297,6 @@ class Union(Solid):
                 depth[near[nearer]], way[near[nearer]] = length[nearer], step[nearer] / length[nearer, None]
         return depth, way
 
-    def _distance(self, offsets):
-        return self._surface(offsets)[0]
-
-    def _normal(self, offsets):
-        return self._surface(offsets)[1]
-
 
 def may_join(kind: type[Shape]) -> bool:
     """Whether shapes of a type may be members of a union: convex ones that know their faces."""

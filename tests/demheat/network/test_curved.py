@@ -11,11 +11,12 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from demheat.conduction.steady import Solution, matrix
 from demheat.network.base import SIDES, branches, row_numbers
-from demheat.network.curved import ROUND_SIDE, fibonacci, round_wall, tangents_within
+from demheat.network.curved import ROUND_SIDE, round_wall, tangents_within
 from demheat.network.interface import connect
 from demheat.network.laguerre import laguerre
 from demheat.packing.domain import cut
 from demheat.packing.relax import relax, settle
+from demheat.packing.twins.interfaces import fibonacci_sphere
 from demheat.packing.twins.surfaces import circumscribed_volume
 from demheat.sampling.field_of import field_of
 from demheat.scene import ROUND_AXES, Material, Scene, domain_volume
@@ -114,7 +115,7 @@ def test_volume_within_tangent_planes():
     assert_allclose(circumscribed_volume(cube), 8.0, rtol=1e-14)
     # A regular octahedron about the unit sphere has the edge sqrt(6) and the volume sqrt(2)/3 edge^3.
     assert_allclose(circumscribed_volume(corners), np.sqrt(2) / 3 * 6**1.5, rtol=1e-14)
-    normals = fibonacci(157)
+    normals = fibonacci_sphere(157)
     planes = np.column_stack([normals, -np.ones(len(normals))])
     # Two computations by qhull, each to rounding.
     slow = ConvexHull(HalfspaceIntersection(planes, np.zeros(3)).intersections).volume

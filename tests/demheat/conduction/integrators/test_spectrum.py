@@ -57,7 +57,6 @@ def chain(n):
         inverse=np.ones(n),
         diagonal=count.astype(float),
         held=none,
-        held_side=none,
         ties=Ties(none, none, np.empty(0), none),
         held_at=None,
         heat_at=None,

@@ -153,7 +153,6 @@ def scalar(rate):
         inverse=np.array([1.0, 0.0]),
         diagonal=np.array([rate, 0.0]),
         held=np.array([1]),
-        held_side=np.array([2]),
         ties=Ties(np.array([0]), np.array([1]), np.array([rate]), np.array([2])),
         held_at=lambda time: np.zeros(1),
         heat_at=lambda time: (np.zeros(2), np.zeros(8)),

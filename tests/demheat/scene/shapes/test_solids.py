@@ -13,6 +13,7 @@ from demheat import Layer, Scene, Sphere
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
 from demheat.scene.shapes.samples import surface_points
 from demheat.scene.shapes.sections import below
+from demheat.scene.shapes.solid import Solid
 from demheat.scene.volumes import extents, narrower
 
 PERIOD = np.array([1.0, 1.5, 2.0])
@@ -352,3 +353,10 @@ def test_thin_ones_are_thin_however_they_lie():
         [0.02, 0.02, 0.06, math.inf],
     )
     assert narrower(cell(plate), np.full(3, 0.03)).all() and not narrower(cell(plate), np.full(3, 0.01)).any()
+
+
+def test_a_solid_supplies_what_its_surface_is():
+    parts = {"_normal": lambda self, offsets: offsets}
+    with pytest.raises(TypeError, match="class Half: must supply _distance and _normal, or _surface"):
+        type("Half", (Solid,), parts)
+    type("Whole", (Solid,), parts | {"_distance": lambda self, offsets: offsets[:, 0]})
