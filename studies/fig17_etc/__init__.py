@@ -17,6 +17,7 @@ from importlib import import_module
 import numpy as np
 
 from demheat import referee
+from demheat.runtime.lazy import lazy_names
 from studies.common import paper_network, silica_epoxy
 from studies.common.paper_network import NAME
 from studies.common.paper_variants import best_variant, parted, worst_error
@@ -26,6 +27,10 @@ from studies.harness import methods
 from studies.harness.converged import converged
 from studies.harness.pick import pick, present
 from studies.harness.printed import printed
+
+__getattr__, __dir__ = lazy_names(
+    __name__, {"studies.fig17_etc.tables": ("notes",), "studies.fig17_etc.figure": ("plot",)}
+)
 
 # What rows of the paper's network run; its `NAME` is spelt out, so that others do not change with its module.
 MODULES = {"network": "studies.fig17_etc.rows"}
@@ -261,17 +266,3 @@ def table(df):
     from studies.fig17_etc.tables import lines
 
     return lines(parted(df)[1])
-
-
-def notes(df):
-    """The variants of the paper's network."""
-    from studies.fig17_etc.tables import told
-
-    return told(df)
-
-
-def plot(df):
-    """k, and k over Maxwell's, with bounds and estimates; errors; deviations between cells; the network's variants."""
-    from studies.fig17_etc.figure import draw
-
-    return draw(df)

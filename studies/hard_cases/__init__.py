@@ -26,8 +26,13 @@ inequality for cubic arrays), duality for layers.
 
 import json
 
+from demheat.runtime.lazy import lazy_names
 from studies.harness.pick import present
 from studies.harness.tolerance import Tolerance
+
+__getattr__, __dir__ = lazy_names(
+    __name__, {"studies.hard_cases.tables": ("table",), "studies.hard_cases.figure": ("plot",)}
+)
 
 EACH = {
     "contrast": 6, "gap": 6, "cut": 4, "ratio": 2, "dense": 1, "thin": 7, "shell": 5, "slender": 5, "islands": 5,
@@ -126,20 +131,3 @@ def words(df):
         f"are silently wrong ({unjudged} have bounds too wide to judge by); of {df['relations'].sum():.0f} "
         f"invariants {df['broken'].sum():.0f} are broken"
     )
-
-
-def table(df):
-    """Who holds where: cases of each family by method, right / refused / warned / silently wrong.
-
-    Those whose certain bounds are too wide to judge by are left out; a scene that refuses itself has no method.
-    """
-    from studies.hard_cases.tables import lines
-
-    return lines(df)
-
-
-def plot(df):
-    """Outcomes by method and family, and the errors of what is verified or warned of."""
-    from studies.hard_cases.figure import draw
-
-    return draw(df)

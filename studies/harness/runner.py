@@ -25,7 +25,8 @@ A study is a module with
   case by its key alone, None if it is none: rows of a guest stay, and are drawn, when it is no longer there.
 
 One that is too long for a file is a folder of its name. These stand in `__init__`; what computes is in `rows`, what is
-made of rows in `errors` or `means`, lines of the table in `tables`, the drawing in `figure`. Errors are defined by
+made of rows in `errors` or `means`, `table` in `tables`, `plot` in `figure`: where such a function needs no more than
+the rows, `__init__` names its file to `lazy_names`, and no row's process loads it. Errors are defined by
 `demheat.referee` alone.
 """
 
