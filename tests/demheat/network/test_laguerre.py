@@ -174,22 +174,6 @@ def test_against_voro(periodic):
         assert set(ours) <= theirs and len(theirs) - len(set(ours)) <= 1
 
 
-@pytest.mark.parametrize(
-    "change, words",
-    [
-        (dict(centers=np.zeros((0, 3))), "centers: shape"),
-        (dict(centers=np.full((5, 3), 2.0)), "must lie in the box"),
-        (dict(centers=np.full((5, 3), np.nan)), "must lie in the box"),
-        (dict(weights=np.array([1.0, np.inf, 1, 1, 1])), "weights"),
-        (dict(weights=np.ones(4)), "weights"),
-    ],
-)
-def test_bad_input(change, words):
-    good = dict(centers=np.random.default_rng(0).random((5, 3)), weights=np.zeros(5), size=(1, 1, 1))
-    with pytest.raises(ValueError, match=words):
-        laguerre(**good | change)
-
-
 def test_too_few_points_in_a_periodic_box():
     with pytest.raises(RuntimeError, match="reach across the periodic box"):
         laguerre(np.array([[0.5, 0.5, 0.5], [0.2, 0.3, 0.4]]), np.zeros(2), (1, 1, 1))
