@@ -6,6 +6,7 @@ Each is refused before any work with a ValueError that names the argument. A new
 # ruff: noqa: E501 (a row of the table is a line)
 
 import inspect
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -113,6 +114,7 @@ SITES = np.stack(np.meshgrid(*[[0.25, 0.75]] * 3, indexing="ij"), axis=-1).resha
 EIGHT = make_packing(SITES, np.full(8, 0.24), (1, 1, 1), True, {})
 ROWS = {"packing": EIGHT, "indptr": np.zeros(9, np.int64), "indices": np.empty(0, np.int64)}
 SOLVED = exact.solve(WALLED, points_per_axis=2)
+OF_PARTICLES = replace(SOLVED, stats={"mean_radius": 0.05})
 TWO = {"k_matrix": 1.0, "k_inclusion": 2.0, "fraction": 0.1}
 TWO_BAD = {"k_matrix": ARRAY, "k_inclusion": ARRAY, "fraction": SHARE}
 CUBIC = {
@@ -245,7 +247,8 @@ TABLE = [
     (slices.plane, {"scene": CELL, "axis": 0, "at": 0.5, "n": 3}, {"scene": OBJECT, "axis": (*WHOLE, 3), "at": PART, "n": COUNT}),
     (slices.on_plane, {"field": SOLVED, "axis": 0, "at": 0.5, "n": 3}, {"field": OBJECT, "axis": (*WHOLE, 3), "at": PART, "n": COUNT, "flux_at": ("a", 5, lambda p: None, lambda p: "a", lambda p: 5.0, lambda p: p[:, 0], lambda p: p[:1], lambda p: p * 1j)}),
     (slices.filled, {"mask": np.ones((2, 2), bool), "values": np.ones(4)}, {"mask": (None, "a", np.ones((2, 2)), np.ones(4, bool)), "values": (None, 5.0, ["a"] * 4, [1j] * 4, [1.0])}),
-    (halo.halo_flux, {"field": SOLVED}, {"field": OBJECT}),
+    (halo.halo_flux, {"field": OF_PARTICLES}, {"field": OBJECT, "ratio": or_none(POSITIVE), "walls": WORD, "same_phase": FLAG, "at": ([0.5, 1.5],)}),
+    (halo.halo_flux, {"field": OF_PARTICLES, "walls": "mirror"}, {"ratio": (21.0,)}),
     (halo.halo_average, {"points": [[0.5] * 3], "values": [1.0], "volumes": [1.0], "radius": 0.1, "size": (1, 1, 1), "periodic": True}, {"points": PLACES, "values": (None, "a", ["1"], [NAN], [1j], [1.0, 2.0]), "volumes": (None, ["1"], [NAN], [-1.0]), "radius": POSITIVE, "size": SIDES, "periodic": FLAG}),
     (SOLVED.temperature_at, {}, {"points": PLACES}),
     (SOLVED.flux_at, {}, {"points": PLACES}),
