@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
-from solid_shapes import HALF, LIMITS, MATRIX, OTHER, RING, SOLIDS, TURN, ball
+from solid_shapes import HALF, LIMITS, OTHER, RING, SOLIDS, TURN, ball, cell
 
-from demheat import Layer, Scene, Sphere
+from demheat import Layer, Sphere
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
 from demheat.scene.shapes.samples import surface_points
 from demheat.scene.shapes.sections import below
@@ -204,11 +204,6 @@ def test_what_planes_leave_of_boxes(seed):
     assert_allclose(part[0], np.clip(0.5 - heights[0] / sides[2], 0, 1), rtol=1e-14)
     assert_allclose(area[0], sides[0] * sides[1] * (abs(heights[0]) < sides[2] / 2), rtol=1e-14)
     assert_allclose(below(normals, -heights, sides)[0], 1 - part, atol=1e-12)
-
-
-def cell(*inclusions, walls=False):
-    load = {"walls": {"x-": 0.0, "x+": 1.0}} if walls else {"gradient": (1.0, 0.0, 0.0)}
-    return Scene((1.0, 1.0, 1.0), MATRIX, inclusions, **load)
 
 
 def fibre(x, y, radius, axis=(0, 0, 1), **knobs):
