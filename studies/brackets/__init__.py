@@ -11,7 +11,7 @@ finer and finer meshes. `voxels`: the same sphere on voxels that know nothing of
 from demheat.runtime.lazy import lazy_names
 from studies.brackets.scenes import DRAWN, KINDS
 from studies.harness import methods
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.harness.tolerance import Tolerance
 
 __getattr__, __dir__ = lazy_names(
@@ -95,8 +95,8 @@ def claims(df):
     if len(drawn):
         yield f"Exact values outside of their brackets, of {len(drawn)} scenes", _outside(drawn), 0
         yield "Median width of the drawn scenes' brackets, %", drawn["width_percent"].median(), 0.25
-    yield from present(_refined(pick(df, part="refined")))
-    yield from present(_on_voxels(pick(df, part="voxels")))
+    yield from _refined(pick(df, part="refined"))
+    yield from _on_voxels(pick(df, part="voxels"))
     judged = pick(df, part="judged", method="bracket")
     if len(judged):
         yield "40 spheres, contrast 150: width, %", judged["width_percent"].iloc[0], 0.3

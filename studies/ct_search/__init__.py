@@ -19,7 +19,7 @@ at most .2 % of the particles with fewer than 2 links before those are joined to
 from demheat import referee
 from demheat.runtime.lazy import lazy_names
 from studies.ct_search import means
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 
 __getattr__, __dir__ = lazy_names(__name__, {"studies.ct_search.figure": ("plot",)})
 
@@ -56,7 +56,7 @@ def claims(df):
     That all is given together is the open question: it is asked of all sets and both weightings of the scatter, by
     number and by volume, as one claim that fails where none does.
     """
-    yield from present([*_followed(df), *_together(df)])
+    yield from [*_followed(df), *_together(df)]
 
 
 def _followed(df):

@@ -10,7 +10,7 @@ q / (1 - 2/z) (Kirkpatrick, Rev. Mod. Phys. 45 (1973) 574), z the number of neig
 from demheat.runtime.lazy import lazy_names
 from studies.damage.cases import CRACKED, DEBONDED, DRAWS, LATTICE, PACKED, RADII, REMOVED, SHARES, THRESHOLD
 from studies.harness import methods
-from studies.harness.pick import pick, present, worst
+from studies.harness.pick import pick, worst
 
 __getattr__, __dir__ = lazy_names(__name__, {"studies.damage.tables": ("table",), "studies.damage.figure": ("plot",)})
 
@@ -91,9 +91,9 @@ def claims(df):
     A field that the damage does not change carries (1 - q) of the heat, and the true one no more: an upper bound of the
     mean over all draws.
     """
-    yield from present(_debonded_claims(pick(df, part="debonded")))
-    yield from present(_crack_claims(pick(df, part="cracks")))
-    yield from present(_link_claims(pick(df, part="links")))
+    yield from _debonded_claims(pick(df, part="debonded"))
+    yield from _crack_claims(pick(df, part="cracks"))
+    yield from _link_claims(pick(df, part="links"))
 
 
 def _debonded_claims(rows):

@@ -12,7 +12,7 @@ of the bulk; "replicated" repeats a relaxed periodic one.
 from demheat import referee
 from demheat.runtime.lazy import lazy_names
 from studies.fig03_calibration.variants import PAPER, PRINTED, VARIANTS, VARIED, unchanged, variant
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 
 __getattr__, __dir__ = lazy_names(
     __name__, {"studies.fig03_calibration.tables": ("table",), "studies.fig03_calibration.figure": ("plot",)}
@@ -122,7 +122,7 @@ def claims(df):
     replicas to 1 %.
     """
     plain = df[unchanged(df)]
-    yield from present([*_wall_claims(plain), *_paper_claims(plain), *_level_claims(df), *_other_claims(df, plain)])
+    yield from [*_wall_claims(plain), *_paper_claims(plain), *_level_claims(df), *_other_claims(df, plain)]
 
 
 def _means(rows, **where):

@@ -28,7 +28,7 @@ from studies.common.sphere_in_time import CENTER_TIMES as TIMES
 from studies.common.sphere_in_time import NUMBERS, PAPERS, SIZES
 from studies.fig07_sphere.means import PAPER, TIGHTER, network_errors, plain
 from studies.harness.cells import cell
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 
 __getattr__, __dir__ = lazy_names(
     __name__, {"studies.fig07_sphere.tables": ("notes",), "studies.fig07_sphere.figure": ("plot",)}
@@ -112,7 +112,7 @@ def claims(df):
     """
     network, others = parted(df)
     others = plain(others)
-    yield from present([*_accuracy(others), *_network(network), *_rest(others)])
+    yield from [*_accuracy(others), *_network(network), *_rest(others)]
 
 
 def _accuracy(df):

@@ -25,7 +25,7 @@ from studies.fig17_etc.means import all_axes, bounds_of, change, network_errors,
 from studies.fig17_etc.scenes import FRACTIONS, WALLED
 from studies.harness import methods
 from studies.harness.converged import converged
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.harness.printed import printed
 
 __getattr__, __dir__ = lazy_names(
@@ -179,7 +179,7 @@ def claims(df):
     cells, so that methods can be compared; to 0.15 % in dense cells, and to 0.5 % at the worst resolution.
     """
     network, df = _network(df), parted(df)[1]
-    yield from present([*_one_arrangement(df), *_boundaries(df), *_averages(df), *network])
+    yield from [*_one_arrangement(df), *_boundaries(df), *_averages(df), *network]
 
 
 def _network(df):

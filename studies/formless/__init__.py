@@ -17,7 +17,6 @@ import math
 from demheat.runtime.lazy import lazy_names
 from studies.formless.parts import BAD, BOARDS, BRICKS, CHECKERED, FRACTIONS, GOOD, HALF, LABYRINTHS
 from studies.harness import methods
-from studies.harness.pick import present
 from studies.harness.tolerance import Tolerance
 
 __getattr__, __dir__ = lazy_names(
@@ -175,4 +174,4 @@ def claims(df):
     """Distances between methods, from walkers and bounds, fractions, and what symmetry says."""
     from studies.formless import verdicts
 
-    yield from present(verdicts.claims(df, APART))
+    yield from verdicts.claims(df, APART)

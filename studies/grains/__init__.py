@@ -19,7 +19,7 @@ from studies.grains.cases import (
     NARROW,
     REALISATIONS,
 )
-from studies.harness.pick import largest, pick, present
+from studies.harness.pick import largest, pick
 
 __getattr__, __dir__ = lazy_names(__name__, {"studies.grains.tables": ("table",), "studies.grains.figure": ("plot",)})
 
@@ -71,12 +71,12 @@ def claims(df):
     Limits were set after a first look at a few rows, but for those of the beds.
     """
     arrays = pick(df, part="array")
-    yield from present(_array_claims(arrays[arrays["contrast"] >= GOOD]))
+    yield from _array_claims(arrays[arrays["contrast"] >= GOOD])
     poor = arrays[(arrays["contrast"] == CONTRASTS[0]) & (arrays["gap"] >= NARROW)]
     least = poor["error_percent"].abs().min() if len(poor) else None
-    yield from present([("arrays, contrast 10, gaps of 0.03 and more: least error, %", least, ">= 15")])
-    yield from present(_contact_claims(pick(df, part="contact")))
-    yield from present(_bed_claims(pick(df, part="bed")))
+    yield "arrays, contrast 10, gaps of 0.03 and more: least error, %", least, ">= 15"
+    yield from _contact_claims(pick(df, part="contact"))
+    yield from _bed_claims(pick(df, part="bed"))
 
 
 def _array_claims(rows):

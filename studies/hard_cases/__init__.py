@@ -27,7 +27,6 @@ inequality for cubic arrays), duality for layers.
 import json
 
 from demheat.runtime.lazy import lazy_names
-from studies.harness.pick import present
 from studies.harness.tolerance import Tolerance
 
 __getattr__, __dir__ = lazy_names(
@@ -86,10 +85,6 @@ def claims(df):
     elements, plain packings, the paper's network, plain voxels) are known to be too sure of themselves: that one in
     twenty of their answers may be is what 95 % intervals leave, and was set when 3 of 200 were known.
     """
-    yield from present(_claims(df))
-
-
-def _claims(df):
     from studies.hard_cases.means import JUDGED, is_main, share, verdicts
 
     each = verdicts(df)

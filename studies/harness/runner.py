@@ -7,7 +7,7 @@ A study is a module with
 - `QUICK(case)`, true for the cases of a quick run;
 - `run(**case)`, a dict of metrics; costs it measures itself (`cost.measured`) replace the whole run's, and a "status"
   with a "note" says of a refusal that it is one;
-- `claims(df)`, pairs of a sentence with a value and a limit;
+- `claims(df)`, pairs of a sentence with a value, None where its rows do not exist, and a limit;
 - optionally `plot(df)`, a figure where one says more than the table: without, it is one of the claims; `VALUES(case)`,
   true for the cases of which nobody asks what they cost, or `VALUES = True` for all: rows have none, and are made side
   by side;

@@ -12,7 +12,7 @@ there.
 from demheat import referee
 from demheat.runtime.lazy import lazy_names
 from studies.harness import methods
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.resistance.cases import (
     ARRAY,
     FRACTION,
@@ -99,9 +99,9 @@ def claims(df):
     multipoles from 1e-8 and of voxels from half a per cent with 64. The length for the gap is held to that of Hasselman
     and Johnson's formula, as at first.
     """
-    yield from present(_array_claims(pick(df, part="array")))
-    yield from present(_neutral_claims(pick(df, part="neutral")))
-    yield from present(_gap_claims(pick(df, part="silica")))
+    yield from _array_claims(pick(df, part="array"))
+    yield from _neutral_claims(pick(df, part="neutral"))
+    yield from _gap_claims(pick(df, part="silica"))
 
 
 def _array_claims(rows):

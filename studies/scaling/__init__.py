@@ -12,7 +12,7 @@ rank.
 
 from demheat.runtime.lazy import lazy_names
 from studies.harness import methods
-from studies.harness.pick import largest, pick, present
+from studies.harness.pick import largest, pick
 from studies.scaling.means import errors, fitted, on_ranks
 
 __getattr__, __dir__ = lazy_names(__name__, {"studies.scaling.tables": ("table",), "studies.scaling.figure": ("plot",)})
@@ -162,7 +162,7 @@ def claims(df):
     the table has them. The packing's own says nothing, as large packings repeat a smaller one.
     """
     df = errors(df)
-    yield from present([*_coarse(df), *_exponents(df), *_goal(df), *_engine(df), *_ranked(df)])
+    yield from [*_coarse(df), *_exponents(df), *_goal(df), *_engine(df), *_ranked(df)]
 
 
 def _coarse(df):

@@ -14,7 +14,7 @@ import math
 
 from demheat.runtime.lazy import lazy_names
 from studies.harness import methods
-from studies.harness.pick import largest, pick, present
+from studies.harness.pick import largest, pick
 from studies.shapes.cases import (
     ADDED,
     CONTRAST,
@@ -91,10 +91,10 @@ def claims(df):
     particles. When all were known, limits that were more than three times as large, some a thousand times, came down
     to two or three times what was found.
     """
-    yield from present(_errors(df))
-    yield from present(_temperatures(df))
-    yield from present(_tensor(pick(df, part="ellipsoid")))
-    yield from present(_intervals(pick(df, part="capped rod")))
+    yield from _errors(df)
+    yield from _temperatures(df)
+    yield from _tensor(pick(df, part="ellipsoid"))
+    yield from _intervals(pick(df, part="capped rod"))
 
 
 def _words(name, row):

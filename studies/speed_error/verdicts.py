@@ -1,7 +1,7 @@
 """Claims on the rows of speed against error."""
 
 from demheat import referee
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.speed_error import means
 from studies.speed_error.cases import COMPARED, TIGHT, TO_LIMIT
 
@@ -16,7 +16,7 @@ def claims(df):
     tessellation came down from 40, 20 and 15 microseconds and once Voro++, schemes from 1e-6; what is a tie was set by
     how costs scatter.
     """
-    yield from present([*_kernels(df), *_schemes(df)])
+    yield from [*_kernels(df), *_schemes(df)]
     again = means.run_twice(df)
     if len(again) >= OFTEN:
         yield "DEM, the same solve twice: factor within which nine costs in ten are", again.quantile(0.9), means.TIE

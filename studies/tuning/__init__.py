@@ -8,7 +8,7 @@ sphere, where the error of the conductivity comes from and with which power of t
 """
 
 from demheat.runtime.lazy import lazy_names
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.tuning.cases import COARSE, GROUPS, MOST_MESHED, NEARER, OLD, PACKINGS, SCENES, SPHERE, cases
 from studies.tuning.scenes import FAMILIES, MESHED
 
@@ -81,8 +81,8 @@ def claims(df):
 
     found = means.errors(df, "unseen")
     for particles in sorted(set(found["particles"])):
-        yield from present(_levels(means, found[found["particles"] == particles], particles))
-    yield from present(_orders(means, df))
+        yield from _levels(means, found[found["particles"] == particles], particles)
+    yield from _orders(means, df)
 
 
 def _levels(means, found, particles):

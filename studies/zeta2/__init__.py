@@ -15,7 +15,7 @@ import numpy as np
 
 from demheat import referee
 from demheat.runtime.lazy import lazy_names
-from studies.harness.pick import largest, pick, present
+from studies.harness.pick import largest, pick
 from studies.zeta2.means import below, pooled, with_bounds
 
 __getattr__, __dir__ = lazy_names(__name__, {"studies.zeta2.figure": ("plot",)})
@@ -115,7 +115,7 @@ def claims(df):
     values were known limits of finer grids came down to less than three times these, as did that of the lattice sums
     from 1e-8, of means from 4 %, of the truncation from 3e-4 and of Torquato's estimate from 1 %.
     """
-    yield from present([*_arrays(df), *_random(df), *_statistics(df), *_bounds(df), *_surfaces(df)])
+    yield from [*_arrays(df), *_random(df), *_statistics(df), *_bounds(df), *_surfaces(df)]
 
 
 def _arrays(df):

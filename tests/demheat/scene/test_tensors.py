@@ -1,4 +1,4 @@
-"""Only here: tensors of users turned the other way, or taken where they are none."""
+"""Only here: tensors of users turned the other way, or mirrored where they have no mirror."""
 
 import pickle
 
