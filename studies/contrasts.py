@@ -14,7 +14,7 @@ from demheat.gallery import random_dispersion
 from demheat.scene import Material, Scene, Sphere
 from studies.harness import methods
 from studies.harness.figures import look
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 
 BODIES = ("one", "83", "chain")
 TITLES = {"one": "one sphere", "83": "83 spheres", "chain": "three that touch"}
@@ -79,10 +79,6 @@ def claims(df):
     over the logarithm of the contrast, as what a contact passes grows with it (Batchelor and O'Brien 1977): that was
     found when a thousandth was asked of all and the chain lacked two hundredths; then the others were held to 1e-6.
     """
-    yield from present(_claims(df))
-
-
-def _claims(df):
     for method in BLIND:
         for resistance in RESISTANCES:
             worst = max(_grown(df, method, resistance), default=None)

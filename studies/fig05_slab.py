@@ -15,7 +15,7 @@ from demheat import referee
 from studies.common.slab import LENGTH, TIMES, packing_of, slab
 from studies.common.slices import slice_means
 from studies.harness.cells import cell, numbers
-from studies.harness.pick import order, pick, present
+from studies.harness.pick import order, pick
 from studies.harness.printed import printed
 
 NUMBERS = (1_000, 3_000, 10_000, 30_000, 100_000)
@@ -112,7 +112,7 @@ def claims(df):
     temperatures where it has them and at the wall, and of Laguerre. The order expected is two; heat is kept to
     rounding.
     """
-    yield from present([*_accuracy(df), *_printed(df), *_order(df), *_balance(df)])
+    yield from [*_accuracy(df), *_printed(df), *_order(df), *_balance(df)]
 
 
 def _accuracy(df):

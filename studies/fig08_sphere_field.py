@@ -16,7 +16,7 @@ from demheat import referee
 from studies.common import sphere_in_time
 from studies.common.sphere_in_time import NUMBERS, SIZES
 from studies.harness.cells import cell, numbers
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.harness.printed import printed
 
 TIMES = (2.0, 5.0, 10.0)
@@ -77,7 +77,7 @@ def claims(df):
     (set when the value was seen): single particles scatter by as much (`worst_r_10`). The order expected is two.
     """
     df = sphere_in_time.solved(df)
-    yield from present([*_accuracy(df), *_rest(df)])
+    yield from [*_accuracy(df), *_rest(df)]
 
 
 def _accuracy(df):

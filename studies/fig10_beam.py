@@ -18,7 +18,7 @@ from demheat import referee
 from studies.common.cases import laws_by_size
 from studies.common.slices import slice_means
 from studies.harness.cells import cell, numbers
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.harness.printed import printed
 from studies.harness.tolerance import Tolerance
 
@@ -114,7 +114,7 @@ def claims(df):
     Limits of Laguerre are two to three times what was found, ratios and what the Platonic law hides at least a third of
     it.
     """
-    return present([*_accuracy(df), *_referee(df), *_hidden(df), *_balance(df)])
+    return [*_accuracy(df), *_referee(df), *_hidden(df), *_balance(df)]
 
 
 # Largest errors allowed to Laguerre at the four times, % of the span; those of 19465 particles, from .008, .005 and

@@ -20,7 +20,7 @@ import numpy as np
 from demheat import referee
 from studies.common.cases import laws_by_size
 from studies.harness.cells import cell, numbers
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.harness.printed import printed
 
 # Limits from elsewhere: what the paper prints.
@@ -118,7 +118,7 @@ def claims(df):
     The paper's dispersion, below 4 % with 20000 elements, is asked of its own law there and of 1000 particles of the
     tessellation; other limits are two to three times what was found, the largest of the three checkpoints.
     """
-    return present([*_scatter(df), *_against_bricks(df), *_bricks(df), *_balance(df)])
+    return [*_scatter(df), *_against_bricks(df), *_bricks(df), *_balance(df)]
 
 
 def _worst(df, law, particles, key):

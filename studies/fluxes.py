@@ -139,6 +139,6 @@ def verdict(df):
 
 def plot(df):
     """Cost over error, a panel for each scene."""
-    from studies.common.searches.figure import draw
+    from studies.common.searches import figure
 
-    return draw(df, "flux", xlim=(5.0, 0.2), ticks=(3.0, 1.0, 0.3))
+    return figure.plot(df, "flux", xlim=(5.0, 0.2), ticks=(3.0, 1.0, 0.3))

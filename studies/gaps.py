@@ -16,7 +16,7 @@ import numpy as np
 from demheat import Material, Scene, Sphere, referee
 from studies.harness import methods
 from studies.harness.figures import GREY, LOOK, look
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 
 GAPS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)
 CONTRASTS = {"cubic": (10.0, 100.0, 1e4, math.inf), "pair": (100.0, math.inf)}
@@ -123,10 +123,6 @@ def claims(df):
 
     Limits were set before any row was made: 2 % from the issue, the share of right answers by guess from trials.
     """
-    yield from present(_claims(df))
-
-
-def _claims(df):
     found = df[(df["name"] == "multipole") & df["lattice"].notna()] if "lattice" in df else df[:0]
     if len(found):
         off = abs(referee.value_error(found["k_ratio"].to_numpy(float), found["lattice"].to_numpy(float)))

@@ -13,7 +13,7 @@ from demheat.gallery import simple_cubic
 from demheat.referee import value_error
 from references.voxels.paint import voxelise
 from studies.harness import methods
-from studies.harness.pick import order, pick, present
+from studies.harness.pick import order, pick
 
 FRACTION, CONTRAST = 0.2, 10.0
 VOXELS = (8, 16, 32, 64)
@@ -72,10 +72,6 @@ def claims(df):
     Stairs are of first order; their volume scatters, so that an order of 0.6 is asked for. That of linear elements was
     2.5 % and came down when .6 % was known.
     """
-    yield from present(_claims(df))
-
-
-def _claims(df):
     own = _own(df)
     for n, limit in ((16, 6.0), (32, 3.0), (64, 1.5)):
         yield f"image of {n}^3: its own error, by split voxels, %", _abs(own.get(n)), limit

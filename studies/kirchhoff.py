@@ -12,7 +12,7 @@ from demheat import referee
 from demheat.scene import Dependence, Layer, Material, Scene, Sphere
 from studies.harness import methods
 from studies.harness.cost import measured
-from studies.harness.pick import order, pick, present
+from studies.harness.pick import order, pick
 
 BODIES, FACTORS = ("layers", "sphere"), (2.0, 10.0)
 NUMBERS, EDGES = (1_000, 3_000, 30_000), (1 / 6, 1 / 12)
@@ -94,7 +94,7 @@ def claims(df):
     Brought nearer when values were known: what particles owe from 1e-5 and 1e-4 % and 1e-7, elements' conductivities
     from .5 %, heat from 1e-7.
     """
-    yield from present([*_network(df), *_elements(df), *_rounds(df)])
+    yield from [*_network(df), *_elements(df), *_rounds(df)]
 
 
 def _network(df):

@@ -17,7 +17,7 @@ from demheat.gallery import sphere_in_cube
 from studies.harness import methods
 from studies.harness.figures import GREY, look
 from studies.harness.methods import resolution
-from studies.harness.pick import finest, pick, present
+from studies.harness.pick import finest, pick
 from studies.harness.tolerance import Tolerance
 
 EXTREMES = (0.0, 1e-6, 1e6, math.inf)
@@ -110,10 +110,6 @@ def claims(df):
 
     Single precision was held to 1e-4 before its values were known.
     """
-    yield from present(_claims(df))
-
-
-def _claims(df):
     solves = df[df["name"] != "lattice"]
     finite = solves[solves["contrast"] < math.inf]
     answered = solves[solves["status"] == "ok"]

@@ -14,7 +14,7 @@ from demheat import Flux, referee
 from demheat.gallery import EDGE, TEMPERATURES, sphere_in_cube
 from studies.harness import methods
 from studies.harness.figures import BLACK, GREY, LOOK, look
-from studies.harness.pick import mean_errors, order, pick, present, worst
+from studies.harness.pick import mean_errors, order, pick, worst
 
 NUMBERS = (1_000, 10_000, 100_000, 400_000)
 SEEDS = (0, 1, 2)
@@ -83,7 +83,7 @@ def claims(df):
     yield f"{text} worst error of the conductivity", laguerre["error_percent"].abs().max(skipna=False) / 100, 1e-12
     yield f"{text} worst error of a temperature over the span", laguerre["linear_error"].max(skipna=False), 1e-10
     sphere = df[df["contrast"] != 1.0]
-    yield from present(_size_claims(sphere))
+    yield from _size_claims(sphere)
 
 
 def _size_claims(sphere):

@@ -12,7 +12,7 @@ import numpy as np
 
 from demheat import referee
 from demheat.scene import Material, Scene
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.harness.printed import printed
 
 PAPER = printed("table1_platonic")
@@ -105,7 +105,7 @@ def packed(packing, particles, seed):
 
 def claims(df):
     """The printed digits; who conserves mass; how the errors of the Platonic law cancel."""
-    return present([*_printed_claims(df), *_law_claims(df), *_platonic_claims(df)])
+    return [*_printed_claims(df), *_law_claims(df), *_platonic_claims(df)]
 
 
 def _printed_claims(df):

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from studies.harness import table
+from studies.harness.claims import with_rows
 
 # What a row has besides what was asked for and what it found.
 ORIGIN = ("case", "code", "commit", "when", "machine", "host", "threads", "versions", "load", "beside", "triad_gbs")
@@ -73,8 +74,7 @@ def judged(study, df):
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         try:
-            for each in study.claims(df):
-                claim = table.claim(*each)
+            for claim in with_rows(study, df):
                 key = NUMBERS.sub("#", claim.sentence)
                 seen[key] += 1
                 found[key, seen[key]] = claim

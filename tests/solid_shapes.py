@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from demheat import Material
+from demheat import Material, Scene
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet, Torus
 
 MATRIX, OTHER = Material(1.0), Material(5.0)
@@ -32,6 +32,11 @@ def torus(points):
     """Below 0 in a ring of radius 0.28, 0.12 thick either way."""
     x, y, z = (points - 0.5).T
     return (np.hypot(x, y) - 0.28) ** 2 + z**2 - 0.12**2
+
+
+def cell(*inclusions, walls=False):
+    load = {"walls": {"x-": 0.0, "x+": 1.0}} if walls else {"gradient": (1.0, 0.0, 0.0)}
+    return Scene((1.0, 1.0, 1.0), MATRIX, inclusions, **load)
 
 
 LIMITS = ((0.05, 0.05, 0.05), (0.95, 0.95, 0.95))

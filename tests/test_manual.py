@@ -12,7 +12,9 @@ from studies.harness.readme import MARKED, filled
 
 ROOT = DOCS.parent
 PAGES = {path.relative_to(DOCS).as_posix(): path.read_text(encoding="utf-8") for path in sorted(DOCS.rglob("*.md"))}
-MARKED_PAGES = [name for name, text in PAGES.items() if MARKED.search(text)]
+# The front page leads into it and has tables, too.
+READ = PAGES | {"../README.md": (ROOT / "README.md").read_text(encoding="utf-8")}
+MARKED_PAGES = [name for name, text in READ.items() if MARKED.search(text)]
 
 
 def _built(source, target):
@@ -58,12 +60,12 @@ def test_equations_are_numbered_and_drawn_by_the_browser(manual):
 
 @pytest.mark.parametrize("name", MARKED_PAGES)
 def test_tables_are_those_of_the_stored_rows(name):
-    assert filled(PAGES[name], ROOT / "results") == PAGES[name]
+    assert filled(READ[name], ROOT / "results") == READ[name]
 
 
-@pytest.mark.parametrize("name", PAGES)
+@pytest.mark.parametrize("name", READ)
 def test_links_lead_somewhere(name):
-    targets = re.findall(r"\]\(([^)#:]+)(?:#[\w-]+)?\)", PAGES[name])
+    targets = re.findall(r"\]\(([^)#:]+)(?:#[\w-]+)?\)", READ[name])
     gone = [each for each in targets if not ((DOCS / name).parent / each).exists()]
     assert not gone, f"docs/{name} has links that lead nowhere: {', '.join(gone)}"
 
@@ -77,9 +79,7 @@ def test_every_study_is_named():
 
 def test_folders_of_the_package_that_a_page_names_exist():
     named = {
-        each
-        for text in PAGES.values()
-        for each in re.findall(r"`((?:demheat|references|studies|tests)/[\w/.]+)`", text)
+        each for text in READ.values() for each in re.findall(r"`((?:demheat|references|studies|tests)/[\w/.]+)`", text)
     }
     # Names of recipes, which a reader makes.
     gone = [each for each in sorted(named) if "mine" not in each and not Path(ROOT, each).exists()]

@@ -2,14 +2,14 @@
 
 import math
 import warnings
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from method_scenes import METHODS, answered
 from numpy.testing import assert_allclose
+from perfect_bodies import MATRIX, MIDDLE, body
 
-from demheat import Cylinder, Image, Laguerre, Layer, Material, Scene, Sphere, damage, evolve, gallery, orthotropic
+from demheat import Cylinder, Image, Laguerre, Layer, Material, Scene, Sphere, damage, gallery, orthotropic
 from demheat.dem.networks import network_of
 from demheat.gate import hashin_shtrikman, wiener
 from demheat.io import scenes
@@ -22,10 +22,8 @@ from demheat.terminal.commands.bounds import bounds_of
 from references import bracket, exact, multipole, walkers
 from references.exact import lattice
 
-PERFECT, LARGE, MATRIX = math.inf, 1e15, 2.0
-MIDDLE = (0.5, 0.5, 0.5)
+PERFECT, LARGE = math.inf, 1e15
 X, Y, CELL = {"walls": {"x-": 0.0, "x+": 1.0}}, {"walls": {"y-": 0.0, "y+": 1.0}}, {"gradient": (1.0, 0.0, 0.0)}
-HEAVY, LIGHT = (Material(k, density=1.0, heat_capacity=1.0) for k in (MATRIX, PERFECT))
 POINTS = np.random.default_rng(0).random((300, 3))
 # Of a gradient of 1 in a matrix of 2: s differs from its limit by 1e-15, and its sums round some hundred times as much.
 SAME = {"rtol": 0, "atol": 1e-12}
@@ -37,10 +35,6 @@ def without_a_warning():
     with warnings.catch_warnings():
         warnings.simplefilter("error", RuntimeWarning)
         yield
-
-
-def body(*shapes, matrix=MATRIX, **load):
-    return Scene((1.0, 1.0, 1.0), Material(matrix), list(shapes), **load)
 
 
 def spheres(*centers, radius=0.25, k=PERFECT, resistance=0.0, **load):
@@ -106,26 +100,14 @@ def test_all_other_methods_refuse(name):
         answered(METHODS[name], spheres(MIDDLE, **X))
 
 
-def heavy(scene):
-    return replace(scene, initial=0.0, matrix=HEAVY, inclusions=[Sphere(MIDDLE, 0.25, LIGHT)])
-
-
 def beside(scene):
-    """What is no method of the suite."""
+    """What is no method of the suite, nor in the table of the manual (`test_scenes_page`)."""
     return {
-        "bracket": lambda: bracket.solve(scene),
         "voxels": lambda: bracket.voxels.solve(scene, voxels=8),
         "walkers": lambda: walkers.solve(scene),
         "negligible": lambda: negligible(scene, 1e-3),
         "zeta2": lambda: multipole.zeta2(spheres(MIDDLE, **CELL)),
         "network_of": lambda: network_of(scene, relax(200, seed=0), Laguerre()),
-        "evolve": lambda: list(
-            evolve(
-                replace(scene, initial=0.0, matrix=HEAVY, inclusions=[Sphere(MIDDLE, 0.25, LIGHT)]),
-                [0.1],
-                particles=200,
-            )
-        ),
         "damage": lambda: damage.solve(scene, particles=200),
     }
 

@@ -4,19 +4,30 @@ import math
 import warnings
 
 import numpy as np
+import perfect_bodies
 import pytest
 from numpy.testing import assert_allclose
+from perfect_bodies import (
+    CELL,
+    FILMS,
+    FROM_ZERO,
+    MATRIX,
+    MIDDLE,
+    OF_FILMS,
+    PERFECT,
+    POINTS,
+    SPANNING,
+    X,
+    Y,
+    beside_a_pore,
+    body,
+)
 from spared import slow_but
 
-from demheat import Box, Convection, Cylinder, Flux, Layer, Material, Radiation, Scene, Sphere, dem, solve
+from demheat import Box, Convection, Cylinder, Layer, Material, Radiation, Sphere, dem, solve
 from demheat.scene.perfect import INFINITE
 from demheat.scene.shapes import Union
 from references.exact import lattice
-
-MATRIX, MIDDLE = 2.0, (0.5, 0.5, 0.5)
-X, Y, CELL = {"walls": {"x-": 20.0, "x+": 30.0}}, {"walls": {"y-": 20.0, "y+": 30.0}}, {"gradient": (10.0, 0.0, 0.0)}
-POINTS = np.random.default_rng(0).random((200, 3))
-PERFECT = Material(math.inf)
 
 
 @pytest.fixture(autouse=True)
@@ -27,19 +38,10 @@ def coarse_without_infinities():
         yield
 
 
-def body(*shapes, **load):
-    return Scene((1.0, 1.0, 1.0), Material(MATRIX), list(shapes), **load)
-
-
-BODIES = {
-    "sphere": lambda k: body(Sphere(MIDDLE, 0.4, k), **X),
-    "across faces": lambda k: body(Sphere((0.1, 0.9, 0.5), 0.4, k), **CELL),
-    "half at a wall": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k), **X),
-    "half at a flux": lambda k: body(Sphere((1.0, 0.5, 0.5), 0.3, k), walls={"x-": 20.0, "x+": Flux(5.0)}),
+BODIES = perfect_bodies.BODIES | {
     "layer at a wall": lambda k: body(Layer(0, 0.0, 0.4, k), **X),
     "layer that resists": lambda k: body(Layer(0, 0.3, 0.7, k, resistance=0.1), **CELL),
     "rod": lambda k: body(Cylinder(MIDDLE, 0.2, (1, 0.2, 0), k, length=0.6), **X),
-    "fibre across": lambda k: body(Cylinder(MIDDLE, 0.2, (0, 0, 1), k), **CELL),
     "union": lambda k: body(Union([Sphere((0.4, 0.5, 0.5), 0.2, k), Box((0.6, 0.5, 0.5), (0.3, 0.2, 0.2), k)], k), **X),
     "unlike": lambda k: body(
         Sphere((0.3, 0.4, 0.5), 0.2, k),
@@ -47,7 +49,6 @@ BODIES = {
         Sphere((0.2, 0.85, 0.2), 0.1, Material(7.0)),
         **X,
     ),
-    "shell": lambda k: body(Sphere(MIDDLE, 0.4, k), Sphere(MIDDLE, 0.3, Material(1.0)), **X),
 }
 
 
@@ -93,11 +94,8 @@ def test_layers_are_exact_and_one_temperature():
 
 def test_a_film_between_two_perfect_layers():
     """What resists parts them, and heat crosses it."""
-    layers = Layer(0, 0.2, 0.4, PERFECT, resistance=0.1), Layer(0, 0.4, 0.7, PERFECT)
     for load in (X, CELL):
-        field = solve(body(*layers, **load), particles=1000)
-        # Half of the matrix, and two films: 1/(.5/2 + .2).
-        assert_allclose(field.conductivity, 1 / 0.45, rtol=1e-7)
+        assert_allclose(solve(body(*FILMS, **load), particles=1000).conductivity, OF_FILMS, rtol=1e-7)
 
 
 def test_multigrid_and_all_axes():
@@ -109,19 +107,7 @@ def test_multigrid_and_all_axes():
     assert [field.scene.axis for field in fields] == [0, 1, 2]
 
 
-SPHERES = (0.25, 0.5, 0.5), (0.75, 0.5, 0.5)
-
-
-@pytest.mark.parametrize(
-    "scene",
-    [
-        body(Layer(0, 0.3, 0.7, PERFECT), **Y),
-        body(Cylinder(MIDDLE, 0.2, (1, 0, 0), PERFECT), **CELL),
-        body(Cylinder(MIDDLE, 0.2, (1, 0, 0), PERFECT), **X),
-        body(*(Sphere(at, 0.25, PERFECT) for at in SPHERES), **X),
-    ],
-    ids=["layer along", "fibre in a cell", "fibre between walls", "chain"],
-)
+@pytest.mark.parametrize("scene", SPANNING.values(), ids=SPANNING)
 def test_what_spans_is_infinite(scene):
     with pytest.raises(ValueError, match=INFINITE):
         solve(scene, particles=1000)
@@ -163,32 +149,18 @@ def test_a_ball_that_touches_a_wall_is_held():
     assert_allclose(field.wall_heat["x-"], -field.wall_heat["x+"], rtol=1e-6)
 
 
-SEALED = Scene((1.0, 1.0, 1.0), Material(0.0), [Sphere(MIDDLE, 0.3, PERFECT)], **X)
-LAYERS = Layer(0, 0.0, 0.7, PERFECT), Layer(0, 0.7, 1.0, Material(2.0))
+# A pore across the cell beside it: percolating, and half of the section.
+ALONG = body(Box((0.5, 0.25, 0.5), (1.0, 0.5, 1.0), Material(2.0)), matrix=0.0, **X)
 
 
-@pytest.mark.parametrize(
-    ("scene", "expected"),
-    [
-        (SEALED, 0.0),
-        (Scene((1.0, 1.0, 1.0), Material(0.0), LAYERS, **X), 2.0 / 0.3),
-        (Scene((1.0, 1.0, 1.0), PERFECT, [Layer(0, 0.3, 0.7, Material(1.0))], **X), 2.5),
-        (Scene((1.0, 1.0, 1.0), PERFECT, [Layer(0, 0.3, 0.7, Material(0.0))], **X), 0.0),
-        # A pore across the cell beside it: percolating, and half of the section.
-        (Scene((1.0, 1.0, 1.0), Material(0.0), [Box((0.5, 0.25, 0.5), (1.0, 0.5, 1.0), Material(2.0))], **X), 1.0),
-    ],
-    ids=["sealed", "in a pore", "matrix", "cut by a pore", "along a pore"],
-)
+@pytest.mark.parametrize(("scene", "expected"), [*FROM_ZERO.values(), (ALONG, 1.0)], ids=[*FROM_ZERO, "along a pore"])
 def test_from_zero_to_infinity(scene, expected):
     """Exact layers; the solver's tolerance."""
     assert_allclose(solve(scene, particles=1000).conductivity, expected, rtol=1e-7)
 
 
 def test_pores_beside():
-    def scene(k):
-        return body(Sphere((0.27, 0.5, 0.5), 0.2, Material(k)), Sphere((0.75, 0.5, 0.5), 0.2, Material(0.0)), **X)
-
-    perfect, good = (solve(scene(k), particles=2000) for k in (math.inf, MATRIX * 1e6))
+    perfect, good = (solve(beside_a_pore(Material(k)), particles=2000) for k in (math.inf, MATRIX * 1e6))
     assert_allclose(perfect.conductivity, good.conductivity, rtol=2e-5)
     assert np.isnan(perfect.temperature_at([[0.75, 0.5, 0.5]])[0])
 

@@ -13,7 +13,7 @@ import demheat
 from demheat import Layer, Material, Scene, Sphere, dem, gallery
 from demheat.dem.networks import network_of
 from demheat.laws import Calibrated
-from references import bounds, bracket, exact, fem, fft, multipole, series, zeta
+from references import bracket, exact, fem, fft, multipole, series, zeta
 from references.exact import lattice
 from references.fem.lookup import NodalField
 from references.fem.system import solve_nodes
@@ -75,11 +75,9 @@ REFUSING = {
     "links": lambda scene: fft.solve(scene, voxels=8, rule="links"),
     "eyre-milton": lambda scene: fft.solve(scene, voxels=8, scheme="eyre-milton"),
     "links, axes": lambda scene: fft.solve_axes(scene, voxels=8, rule="links"),
-    "bracket": lambda scene: bracket.solve(scene),
     "bracket, tensor": lambda _: bracket.solve_tensor(array(0.5, gradient=(1.0, 0.0, 0.0))),
     "zeta by voxels": lambda _: zeta.zeta2(array(0.5, gradient=(1.0, 0.0, 0.0)), voxels=8),
     "zeta by multipoles": lambda _: multipole.zeta2(array(0.5, gradient=(1.0, 0.0, 0.0))),
-    "formula": lambda scene: bounds.estimate(scene),
 }
 
 

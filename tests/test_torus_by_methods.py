@@ -10,7 +10,7 @@ from solid_shapes import MATRIX, RING
 from demheat import Cylinder, Material, Scene, Sphere, Torus, solve
 from demheat.io import scenes
 from demheat.scene.shapes.level_set import ASIDE
-from references import bracket, exact, fem, fft, multipole
+from references import fem, fft
 
 MIDDLE = (0.5, 0.5, 0.5)
 
@@ -98,22 +98,6 @@ def test_a_box_in_its_hole_is_outside():
         assert cut.contains(point[None])[0] and np.all((point >= 0) & (point <= 1))
     away = ring(5.0, (0.9, 0.1, 0.0))
     assert away.contains(away.point_in((1, 1, 1), periodic=True)[None], period=np.ones(3))[0]
-
-
-REFUSALS = {
-    "closed forms": (exact.solve, "no closed form"),
-    "multipoles": (multipole.solve, r"a torus, Scene.inclusions\[0\]: multipole knows"),
-    "brackets": (bracket.solve, r"a torus, Scene.inclusions\[0\]: bounds are known on"),
-    "brackets on voxels": (lambda scene: bracket.voxels.solve(scene, voxels=8), "a torus"),
-}
-
-
-@pytest.mark.parametrize("name", REFUSALS)
-def test_who_does_not_know_it_refuses_it_in_one_line(name):
-    ask, words = REFUSALS[name]
-    with pytest.raises(NotImplementedError, match=words) as refused:
-        ask(cell(ring(5.0)))
-    assert "\n" not in str(refused.value)
 
 
 def test_files_hold_it(tmp_path):

@@ -8,10 +8,15 @@ finer and finer meshes. `voxels`: the same sphere on voxels that know nothing of
 `judged`: 40 spheres at contrast 150 between walls as each method answers by default, beside the bracket.
 """
 
+from demheat.runtime.lazy import lazy_names
 from studies.brackets.scenes import DRAWN, KINDS
 from studies.harness import methods
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.harness.tolerance import Tolerance
+
+__getattr__, __dir__ = lazy_names(
+    __name__, {"studies.brackets.tables": ("table",), "studies.brackets.figure": ("plot",)}
+)
 
 EACH = 8  # drawn scenes of a kind
 # Edges of the finest of elements beside the box, by scene.
@@ -90,8 +95,8 @@ def claims(df):
     if len(drawn):
         yield f"Exact values outside of their brackets, of {len(drawn)} scenes", _outside(drawn), 0
         yield "Median width of the drawn scenes' brackets, %", drawn["width_percent"].median(), 0.25
-    yield from present(_refined(pick(df, part="refined")))
-    yield from present(_on_voxels(pick(df, part="voxels")))
+    yield from _refined(pick(df, part="refined"))
+    yield from _on_voxels(pick(df, part="voxels"))
     judged = pick(df, part="judged", method="bracket")
     if len(judged):
         yield "40 spheres, contrast 150: width, %", judged["width_percent"].iloc[0], 0.3
@@ -133,23 +138,3 @@ def words(df):
         f"40 spheres at contrast 150 between walls to {held['width_percent']:.2g} %, beside "
         f"which stand the answers of {', '.join(beside(others[others['method'] != 'bracket'], held))}"
     )
-
-
-def table(df):
-    """Bounds of k over the matrix's, widths and costs.
-
-    "exact in" says where between the bounds the exact value is, 0 the lower and 1 the upper; of drawn scenes the least
-    and the greatest of each kind. Elements, unknowns of temperature and flux, CPU seconds and memory are of one
-    bracket, or the mean of a kind; with a method those of its solve, and its answer's place between the bounds; of the
-    DEM with its packing, unless that was kept.
-    """
-    from studies.brackets.tables import lines
-
-    return lines(df)
-
-
-def plot(df):
-    """Width against cost; the drawn scenes with the exact value between their bounds."""
-    from studies.brackets.figure import draw
-
-    return draw(df)

@@ -8,8 +8,8 @@ from studies.harness.figures import BLACK, GREY
 from studies.harness.pick import pick
 
 
-def draw(df):
-    """Two panels."""
+def plot(df):
+    """Width against cost; the drawn scenes with the exact value between their bounds."""
     from matplotlib import pyplot
 
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4.8))

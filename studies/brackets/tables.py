@@ -7,8 +7,14 @@ from studies.harness.figures import LOOK
 from studies.harness.pick import pick
 
 
-def lines(df):
-    """One line of each kind of drawn scenes, of each refined mesh, and of each answer."""
+def table(df):
+    """Bounds of k over the matrix's, widths and costs.
+
+    "exact in" says where between the bounds the exact value is, 0 the lower and 1 the upper; of drawn scenes the least
+    and the greatest of each kind. Elements, unknowns of temperature and flux, CPU seconds and memory are of one
+    bracket, or the mean of a kind; with a method those of its solve, and its answer's place between the bounds; of the
+    DEM with its packing, unless that was kept.
+    """
     rows = [_kind(kind, group) for kind, group in pick(df, part="drawn").groupby("scene", sort=False)]
     rows += [_mesh(row) for _, row in pick(df, part="refined").iterrows()]
     rows += [_mesh(row) for _, row in pick(df, part="voxels").iterrows()]

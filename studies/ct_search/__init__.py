@@ -17,8 +17,11 @@ at most .2 % of the particles with fewer than 2 links before those are joined to
 """
 
 from demheat import referee
+from demheat.runtime.lazy import lazy_names
 from studies.ct_search import means
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
+
+__getattr__, __dir__ = lazy_names(__name__, {"studies.ct_search.figure": ("plot",)})
 
 SPREADS, LINKS, MEANS = (0.0, 0.1, 0.15, 0.2, 0.3), (6.5, 7.0, 7.5, 8.0), ("arithmetic", "harmonic")
 PAPER = means.PAPER
@@ -53,7 +56,7 @@ def claims(df):
     That all is given together is the open question: it is asked of all sets and both weightings of the scatter, by
     number and by volume, as one claim that fails where none does.
     """
-    yield from present([*_followed(df), *_together(df)])
+    yield from [*_followed(df), *_together(df)]
 
 
 def _followed(df):
@@ -92,10 +95,3 @@ def table(df):
 def notes(df):
     """The best set, the printed one and that of half its spread, in words made of the rows."""
     return means.in_words(df)
-
-
-def plot(df):
-    """Maps of what is printed over spread and links, one block for each mean radius."""
-    from studies.ct_search.figure import draw
-
-    return draw(df)

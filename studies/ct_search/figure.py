@@ -21,8 +21,8 @@ PANELS = {
 STEPS = (-4.0, -2.0, -1.0, 1.0, 2.0, 4.0)
 
 
-def draw(df):
-    """Figure of the rows."""
+def plot(df):
+    """Maps of what is printed over spread and links, one block for each mean radius."""
     from matplotlib import pyplot
 
     lines = ranked(df)

@@ -7,9 +7,12 @@ simple cubic lattice and of a packing's network, beside the effective medium the
 q / (1 - 2/z) (Kirkpatrick, Rev. Mod. Phys. 45 (1973) 574), z the number of neighbours.
 """
 
+from demheat.runtime.lazy import lazy_names
 from studies.damage.cases import CRACKED, DEBONDED, DRAWS, LATTICE, PACKED, RADII, REMOVED, SHARES, THRESHOLD
 from studies.harness import methods
-from studies.harness.pick import pick, present, worst
+from studies.harness.pick import pick, worst
+
+__getattr__, __dir__ = lazy_names(__name__, {"studies.damage.tables": ("table",), "studies.damage.figure": ("plot",)})
 
 TIMEOUT = 3600.0
 # Of a case: what is not a knob of its method.
@@ -88,9 +91,9 @@ def claims(df):
     A field that the damage does not change carries (1 - q) of the heat, and the true one no more: an upper bound of the
     mean over all draws.
     """
-    yield from present(_debonded_claims(pick(df, part="debonded")))
-    yield from present(_crack_claims(pick(df, part="cracks")))
-    yield from present(_link_claims(pick(df, part="links")))
+    yield from _debonded_claims(pick(df, part="debonded"))
+    yield from _crack_claims(pick(df, part="cracks"))
+    yield from _link_claims(pick(df, part="links"))
 
 
 def _debonded_claims(rows):
@@ -132,13 +135,6 @@ def _link_claims(rows):
     yield "lattice and packing: largest mean over draws above the bound 1 - q, of it", above_bound(rows), 0.005
 
 
-def table(df):
-    """Spheres that have come off: errors against exact values, %, by the share of them."""
-    from studies.damage import tables
-
-    return tables.of_spheres(df)
-
-
 def notes(df):
     """Tables of discs and of links; why one limit is missed, where it is."""
     from studies.damage import tables
@@ -159,10 +155,3 @@ def notes(df):
             f"Elements half as large leave {fine:.3f} % of {coarse:.3f} %: spheres and gaps set the size of elements "
             f"whatever is asked for, and {unknowns.iloc[-1]:.0f} unknowns become {unknowns.iloc[0]:.0f}."
         )
-
-
-def plot(df):
-    """Conductivity against damage of each kind, with what is known of it as lines."""
-    from studies.damage.figure import draw
-
-    return draw(df)

@@ -9,8 +9,8 @@ from studies.harness.figures import BLACK, BLUE, GREY, ORANGE, RED, SKY, look
 from studies.harness.pick import finest, pick
 
 
-def draw(df):
-    """Three panels."""
+def plot(df):
+    """Conductivity against damage of each kind, with what is known of it as lines."""
     from matplotlib import pyplot
 
     figure, (one, two, three) = pyplot.subplots(1, 3, figsize=(14, 4.6))

@@ -7,8 +7,8 @@ from studies.harness import methods
 from studies.harness.pick import pick
 
 
-def of_spheres(df):
-    """Errors of bodies whose spheres have come off: a line of each method and resolution, a column of each share."""
+def table(df):
+    """Spheres that have come off: errors against exact values, %, by the share of them."""
     return _errors(pick(df, part="debonded"), "share")
 
 

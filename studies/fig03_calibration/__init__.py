@@ -10,8 +10,13 @@ of the bulk; "replicated" repeats a relaxed periodic one.
 """
 
 from demheat import referee
+from demheat.runtime.lazy import lazy_names
 from studies.fig03_calibration.variants import PAPER, PRINTED, VARIANTS, VARIED, unchanged, variant
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
+
+__getattr__, __dir__ = lazy_names(
+    __name__, {"studies.fig03_calibration.tables": ("table",), "studies.fig03_calibration.figure": ("plot",)}
+)
 
 SEEDS = (0, 1, 2, 3)
 # Packings of a mean; all where the paper prints their scatter, of four.
@@ -117,7 +122,7 @@ def claims(df):
     replicas to 1 %.
     """
     plain = df[unchanged(df)]
-    yield from present([*_wall_claims(plain), *_paper_claims(plain), *_level_claims(df), *_other_claims(df, plain)])
+    yield from [*_wall_claims(plain), *_paper_claims(plain), *_level_claims(df), *_other_claims(df, plain)]
 
 
 def _means(rows, **where):
@@ -201,23 +206,3 @@ def notes(df):
             f"C_t of {PRINTED[VARIED]:g} with 1e5 particles is not reproduced; what differs is not known. One LSA "
             f"packing each, changed in one thing: {found}."
         )
-
-
-def table(df):
-    """C_t by number of particles, mean over three packings, of costly ones, isothermal ends and changes of one.
-
-    Scatter is the coefficient of variation at 1e5, %.
-
-    Bound and formula are at the largest number of particles: 1 over the conductivity under a linear field, below which
-    C_t cannot lie in the periodic cell, and 4 <R^3>/(Z phi <R_m^3>), <R^3> over particles and <R_m^3> over links.
-    """
-    from studies.fig03_calibration.tables import lines
-
-    return lines(df)
-
-
-def plot(df):
-    """C_t over the number of particles by load, and at 1e5 by what else is changed."""
-    from studies.fig03_calibration.figure import draw
-
-    return draw(df)

@@ -13,7 +13,7 @@ LINES = {
 }
 
 
-def draw(df):
+def plot(df):
     """C_t over the number of particles by load, and at 1e5 by what else is changed."""
     from matplotlib import pyplot
 

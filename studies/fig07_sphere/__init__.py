@@ -19,6 +19,7 @@ from importlib import import_module
 import numpy as np
 
 from demheat import referee
+from demheat.runtime.lazy import lazy_names
 from studies.common import sphere_in_time
 from studies.common.paper_network import NAME, PACKINGS, SEEDS, WALLED
 from studies.common.paper_network import cases as network_cases
@@ -27,7 +28,11 @@ from studies.common.sphere_in_time import CENTER_TIMES as TIMES
 from studies.common.sphere_in_time import NUMBERS, PAPERS, SIZES
 from studies.fig07_sphere.means import PAPER, TIGHTER, network_errors, plain
 from studies.harness.cells import cell
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
+
+__getattr__, __dir__ = lazy_names(
+    __name__, {"studies.fig07_sphere.tables": ("notes",), "studies.fig07_sphere.figure": ("plot",)}
+)
 
 # What rows of the paper's network run; its `NAME` is spelt out, so that others do not change with its module.
 MODULES = {"network": "studies.fig07_sphere.rows"}
@@ -107,7 +112,7 @@ def claims(df):
     """
     network, others = parted(df)
     others = plain(others)
-    yield from present([*_accuracy(others), *_network(network), *_rest(others)])
+    yield from [*_accuracy(others), *_network(network), *_rest(others)]
 
 
 def _accuracy(df):
@@ -162,17 +167,3 @@ def table(df):
     kept |= {name: "mean" for name in ("unknowns", "elements", "steps", "iterations", "cpu_s", "peak_mib")}
     found = df.groupby(["name", "particles", "size"], sort=False, dropna=False)
     return found.agg(kept).reset_index()
-
-
-def notes(df):
-    """The paper's network in all its variants, and where quadratic elements stall."""
-    from studies.fig07_sphere.tables import told
-
-    return told(df)
-
-
-def plot(df):
-    """The centre in time, its error in time, errors against unknowns, and the paper's network's variants."""
-    from studies.fig07_sphere.figure import draw
-
-    return draw(df)

@@ -12,8 +12,8 @@ from studies.harness.cells import numbers
 from studies.harness.figures import BLACK
 
 
-def draw(df):
-    """Four panels, and one more where the network's variants have rows."""
+def plot(df):
+    """The centre in time, its error in time, errors against unknowns, and the paper's network's variants."""
     from matplotlib import pyplot
 
     network, others = parted(df)

@@ -5,8 +5,8 @@ from studies.fig07_sphere.means import PAPER, TIGHTER, network_errors, plain
 from studies.harness.pick import pick
 
 
-def told(df):
-    """Sentences and the table of the variants, as far as there are rows."""
+def notes(df):
+    """The paper's network in all its variants, and where quadratic elements stall."""
     network, others = parted(df)
     made, among = network_errors(network), ["error_10s"]
     names = {"error_10s": "at 10 s, K", "worst": "largest, K"}

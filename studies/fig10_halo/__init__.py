@@ -13,8 +13,13 @@ the halos of 11 radii; for "laguerre", of its fluxes.
 """
 
 from demheat import referee
+from demheat.runtime.lazy import lazy_names
 from studies.fig10_halo.statistics import PAPER, SHOWN, long
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
+
+__getattr__, __dir__ = lazy_names(
+    __name__, {"studies.fig10_halo.tables": ("table",), "studies.fig10_halo.figure": ("plot",)}
+)
 
 SPLITS = ("half", "radii")
 # Numbers of particles, and their packings.
@@ -81,7 +86,7 @@ def claims(df):
     particles or the bulk, by number or by volume. Laguerre's facets have none but the solver's tolerance.
     """
     rows = long(df)
-    yield from present([*_exact(rows), *_paper(rows), *_splits(rows), *_size(rows), *_cost(df)])
+    yield from [*_exact(rows), *_paper(rows), *_splits(rows), *_size(rows), *_cost(df)]
 
 
 def _exact(rows):
@@ -156,16 +161,6 @@ def _cost(df):
     yield "Halo of 11 of 5e5 particles: peak memory, bytes per particle", bytes_each, 600.0
 
 
-def table(df):
-    """CoV of the flux in per cent, means over packings: over all particles or the bulk, by number and by volume.
-
-    "own" is without halo, "halo 4" and "halo 11" with halos of so many mean radii.
-    """
-    from studies.fig10_halo.tables import lines
-
-    return lines(df)
-
-
 def notes(df):
     """How far each weighting is off the printed numbers, the flux near a wall, and what halos cost."""
     from studies.fig10_halo.tables import extremes, in_words
@@ -177,10 +172,3 @@ def notes(df):
         "many threads, or of Laguerre's fluxes."
     )
     yield markdown(extremes(df))
-
-
-def plot(df):
-    """CoV against the halo's radius by all four weightings; density functions; the flux near a wall."""
-    from studies.fig10_halo.figure import draw
-
-    return draw(df)

@@ -12,7 +12,7 @@ COLOURS = (ORANGE, GREEN, BLUE, RED)
 HALOS = {0.0: ("no halo", RED), 4.0: ("halo of 4", BLUE), 11.0: ("halo of 11", GREY)}
 
 
-def draw(df):
+def plot(df):
     """CoV against the halo's radius by all four weightings; density functions; the flux near a wall."""
     from matplotlib import pyplot
 

@@ -19,8 +19,11 @@ def factors(rows):
     return pd.DataFrame(found).set_axis(pd.MultiIndex.from_tuples(WEIGHTINGS))
 
 
-def lines(df):
-    """Scatter by all four weightings as a data frame: two lines for each network and number of particles."""
+def table(df):
+    """CoV of the flux in per cent, means over packings: over all particles or the bulk, by number and by volume.
+
+    "own" is without halo, "halo 4" and "halo 11" with halos of so many mean radii.
+    """
     import pandas as pd
 
     shown = []

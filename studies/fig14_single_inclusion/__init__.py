@@ -14,13 +14,22 @@ from importlib import import_module
 
 from demheat import referee
 from demheat.gallery import EDGE, sphere_in_cube
+from demheat.runtime.lazy import lazy_names
 from studies.common import paper_network
 from studies.common.paper_network import NAME
 from studies.common.paper_variants import best_variant, parted, variant_errors, variants, worst_error
 from studies.fig14_single_inclusion.means import PAPER, exact_of
 from studies.fig14_single_inclusion.scenes import FRACTIONS, SCENES, WORDS
 from studies.harness import methods
-from studies.harness.pick import extrapolated, pick, present, worst
+from studies.harness.pick import extrapolated, pick, worst
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "studies.fig14_single_inclusion.tables": ("headline", "notes"),
+        "studies.fig14_single_inclusion.figure": ("plot",),
+    },
+)
 
 # What rows of the paper's network run; its `NAME` is spelt out, so that others do not change with its module.
 MODULES = {"network": "studies.fig14_single_inclusion.rows"}
@@ -123,8 +132,8 @@ def claims(df):
     the paper has it: against Maxwell's formula, by the best of all variants.
     """
     network, df = parted(df)
-    claimed = [*_dem_claims(df), *_network_claims(network, df), *_fem_claims(df), *_fft_claims(df), *_exact_claims(df)]
-    yield from present(claimed)
+    yield from [*_dem_claims(df), *_network_claims(network, df), *_fem_claims(df)]
+    yield from [*_fft_claims(df), *_exact_claims(df)]
 
 
 def _dem_claims(df):
@@ -211,30 +220,9 @@ def table(df):
     return lines(parted(df)[1])
 
 
-def headline(df):
-    """The finest rows of the methods that a first reader asks for, without what they cost besides time."""
-    from studies.fig14_single_inclusion.tables import short
-
-    return short(df)
-
-
 def words(df):
     """The error of the DEM by its particles at contrast 10, on the scene on which its constants were found."""
     from studies.fig14_single_inclusion.tables import lines
 
     rows = lines(parted(df)[1]).query("method.str.contains('default')")
     return ", ".join(f"{row['10']:+.2g} % with {row['resolution']}" for _, row in rows.iterrows())
-
-
-def notes(df):
-    """The variants of the paper's network; what is a choice here, or a property of the scenes."""
-    from studies.fig14_single_inclusion.tables import told
-
-    return told(df)
-
-
-def plot(df):
-    """Conductivity over contrast with the exact curve, errors of the methods, and of the paper's network's variants."""
-    from studies.fig14_single_inclusion.figure import draw
-
-    return draw(df)

@@ -15,8 +15,8 @@ ACROSS = "conductivity of the sphere / matrix"
 SHOWN = ("dem-plain", "dem-calibrated", "fem-p1", "maxwell")
 
 
-def draw(df):
-    """Two panels, and a third where the network's variants have rows."""
+def plot(df):
+    """Conductivity over contrast with the exact curve, errors of the methods, and of the paper's network's variants."""
     from matplotlib import pyplot
 
     network, others = parted(df)

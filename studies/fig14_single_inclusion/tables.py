@@ -37,8 +37,8 @@ def lines(df):
     return found if found["packing_s"].notna().any() else found.drop(columns="packing_s")
 
 
-def short(df):
-    """The finest rows of a few methods, with the best variant of the paper's network, at the cost of all scenes."""
+def headline(df):
+    """The finest rows of the methods that a first reader asks for, without what they cost besides time."""
     import pandas as pd
 
     network, others = parted(df)
@@ -57,8 +57,8 @@ def short(df):
     return pd.concat([found[:place], pd.DataFrame([row]), found[place:]], ignore_index=True)
 
 
-def told(df):
-    """Sentences and tables below the main one."""
+def notes(df):
+    """The variants of the paper's network; what is a choice here, or a property of the scenes."""
     network, others = parted(df)
     made = variant_errors(network, exact_of(df))
     names = {word: word for word in WORDS} | {"half": "f = 0.5"}

@@ -18,7 +18,7 @@ from demheat.gallery import sphere_in_cube
 from studies.fig15_16_fields.tables import error_columns, largest
 from studies.harness import methods
 from studies.harness.cells import cell
-from studies.harness.pick import order, pick, present
+from studies.harness.pick import order, pick
 from studies.harness.printed import printed
 
 # Table 2, in edges of the cube.
@@ -150,7 +150,7 @@ def claims(df):
     harmonic fits had made its fluxes nearer. What the paper
     states of its network is asked of ours as it is printed.
     """
-    yield from present([*_exact(df), *_laguerre(df), *_orders(df), *_printed(df), *_network(df), *_others(df)])
+    yield from [*_exact(df), *_laguerre(df), *_orders(df), *_printed(df), *_network(df), *_others(df)]
 
 
 def _exact(df):

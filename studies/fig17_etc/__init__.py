@@ -17,6 +17,7 @@ from importlib import import_module
 import numpy as np
 
 from demheat import referee
+from demheat.runtime.lazy import lazy_names
 from studies.common import paper_network, silica_epoxy
 from studies.common.paper_network import NAME
 from studies.common.paper_variants import best_variant, parted, worst_error
@@ -24,8 +25,12 @@ from studies.fig17_etc.means import all_axes, bounds_of, change, network_errors,
 from studies.fig17_etc.scenes import FRACTIONS, WALLED
 from studies.harness import methods
 from studies.harness.converged import converged
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.harness.printed import printed
+
+__getattr__, __dir__ = lazy_names(
+    __name__, {"studies.fig17_etc.tables": ("notes",), "studies.fig17_etc.figure": ("plot",)}
+)
 
 # What rows of the paper's network run; its `NAME` is spelt out, so that others do not change with its module.
 MODULES = {"network": "studies.fig17_etc.rows"}
@@ -174,7 +179,7 @@ def claims(df):
     cells, so that methods can be compared; to 0.15 % in dense cells, and to 0.5 % at the worst resolution.
     """
     network, df = _network(df), parted(df)[1]
-    yield from present([*_one_arrangement(df), *_boundaries(df), *_averages(df), *network])
+    yield from [*_one_arrangement(df), *_boundaries(df), *_averages(df), *network]
 
 
 def _network(df):
@@ -261,17 +266,3 @@ def table(df):
     from studies.fig17_etc.tables import lines
 
     return lines(parted(df)[1])
-
-
-def notes(df):
-    """The variants of the paper's network."""
-    from studies.fig17_etc.tables import told
-
-    return told(df)
-
-
-def plot(df):
-    """k, and k over Maxwell's, with bounds and estimates; errors; deviations between cells; the network's variants."""
-    from studies.fig17_etc.figure import draw
-
-    return draw(df)

@@ -20,8 +20,8 @@ WALLS = {"gradient": "periodic cells", "walls": "between isothermal walls"}
 FLOOR = 1e-4  # per cent; what is below is drawn there
 
 
-def draw(df):
-    """Two lines of panels; the variants of the paper's network where they have rows."""
+def plot(df):
+    """k, and k over Maxwell's, with bounds and estimates; errors; deviations between cells; the network's variants."""
     from matplotlib import pyplot
 
     network, others = parted(df)

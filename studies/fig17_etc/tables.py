@@ -153,8 +153,8 @@ def _walls(df, fractions):
     yield _line("walls less gradient, %", "FFT, deviation between cells", {f: v.std() for f, v in cells.items()})
 
 
-def told(df):
-    """The paper's network in all its variants; nothing without its rows."""
+def notes(df):
+    """The variants of the paper's network."""
     said = []
     for boundary, against in (("gradient", "periodic cells, against the multipoles"), ("walls", "")):
         made = network_errors(df, boundary)

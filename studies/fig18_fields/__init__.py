@@ -28,7 +28,7 @@ from studies.common.paper_variants import parted
 from studies.fig18_fields.tables import COMPARED
 from studies.harness import methods
 from studies.harness.methods import EDGE, resolution
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.harness.printed import printed
 
 # What rows of the paper's network run; its `NAME` is spelt out, so that others do not change with its module.
@@ -128,7 +128,7 @@ def claims(df):
     others = parted(df)[1]
     found = with_errors(others)
     claimed = [*_witnesses(others), *_methods(found), *_side_by_side(found)]
-    yield from present([*claimed, *_network(network_errors(df), found)])
+    yield from [*claimed, *_network(network_errors(df), found)]
 
 
 def _witnesses(df):

@@ -14,10 +14,19 @@ conduct a third is left, as was found of P and D (Torquato, Hyun and Donev 2002)
 
 import math
 
+from demheat.runtime.lazy import lazy_names
 from studies.formless.parts import BAD, BOARDS, BRICKS, CHECKERED, FRACTIONS, GOOD, HALF, LABYRINTHS
 from studies.harness import methods
-from studies.harness.pick import present
 from studies.harness.tolerance import Tolerance
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "studies.formless.walked": ("words",),
+        "studies.formless.tables": ("table",),
+        "studies.formless.figure": ("plot",),
+    },
+)
 
 # What the DEM and the FFT are asked of these, who pay for each point of a surface.
 OF_ALL = (0.1, 0.5, 0.9)
@@ -165,30 +174,4 @@ def claims(df):
     """Distances between methods, from walkers and bounds, fractions, and what symmetry says."""
     from studies.formless import verdicts
 
-    yield from present(verdicts.claims(df, APART))
-
-
-def words(df):
-    """What walkers found as a referee."""
-    from studies.formless import walked
-
-    return walked.in_words(df)
-
-
-def table(df):
-    """Conductivity over the matrix's by the finest elements, the others' distance from it, %, bounds and verdicts.
-
-    Of walkers half of their interval besides, %, and whose values it does not hold; of a good labyrinth they are those
-    of the bad one that is the rest of the cell. Bounds are of the fractions that the method has, of checkerboards those
-    of admissible fields on voxels.
-    """
-    from studies.formless import tables
-
-    return tables.lines(df)
-
-
-def plot(df):
-    """Conductivity of labyrinths against their fraction, between bounds; how far methods are apart, and off walkers."""
-    from studies.formless import figure
-
-    return figure.draw(df)
+    yield from verdicts.claims(df, APART)

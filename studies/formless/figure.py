@@ -10,8 +10,8 @@ MARKS = {"fem": "o", "fem-p1": "o", "dem": "s", "fft": "^", "fft-plain": "v", "f
 COLOURS = {"fem": "C7", "fem-p1": "C7", "dem": "C0", "fft": "C1", "fft-plain": "C2", "fft-links": "C3"}
 
 
-def draw(df):
-    """Three panels."""
+def plot(df):
+    """Conductivity of labyrinths against their fraction, between bounds; how far methods are apart, and off walkers."""
     import matplotlib.pyplot as plt
 
     figure, (one, other, last) = plt.subplots(1, 3, figsize=(15, 6.5), layout="constrained", width_ratios=(1, 1, 1.15))

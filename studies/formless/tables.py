@@ -9,8 +9,13 @@ from studies.formless.verdicts import with_elements
 NAN = float("nan")
 
 
-def lines(df):
-    """Values, distances, bounds and who is outside of them."""
+def table(df):
+    """Conductivity over the matrix's by the finest elements, the others' distance from it, %, bounds and verdicts.
+
+    Of walkers half of their interval besides, %, and whose values it does not hold; of a good labyrinth they are those
+    of the bad one that is the rest of the cell. Bounds are of the fractions that the method has, of checkerboards those
+    of admissible fields on voxels.
+    """
     judged = walked.judged(df)
     scenes = with_elements(df).groupby(["part", "contrast", "fraction"], sort=False, dropna=False)
     return pd.DataFrame([_line(df, judged, scene, group) for scene, group in scenes])

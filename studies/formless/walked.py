@@ -86,7 +86,7 @@ def named(rows, all_of):
     return ", ".join(dict.fromkeys(TITLES[name] for name in rows["name"])) or "none"
 
 
-def in_words(df):
+def words(df):
     """How many scenes walkers judge, how sharply, and which values of each method their intervals hold."""
     rows, own = judged(df), pick(df, name="walkers")
     halves, parts = own["walked_half_percent"], []

@@ -16,7 +16,19 @@ next target would take over two minutes or 8 GiB.
 Costs are those of a quiet machine, or none are stored: `python -m studies run frontier --out results --force`.
 """
 
+from demheat.runtime.lazy import lazy_names
 from studies.frontier.cases import QUICK_SECONDS, all_cases, second_cases
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "studies.frontier.verdicts": ("claims",),
+        "studies.frontier.second": ("on_a_second_machine", "with_more_ways"),
+        "studies.frontier.advice": ("advised",),
+        "studies.common.searches.means": ("multipoles", "beside_peers"),
+        "studies.common.searches.figure": ("plot",),
+    },
+)
 
 CASES = list(all_cases())
 # That the record does not hold (`second`).
@@ -103,17 +115,6 @@ def warm_up(scene, way, seconds, method):
         rows.warm_up(scene, way)
 
 
-def claims(df):
-    """Who was expected to win, and how far ways differ at one value of their knobs.
-
-    The guesses were set before any search, and what half of the scenes may differ by once errors at these values had
-    been looked at on some of them.
-    """
-    from studies.frontier.verdicts import all_claims
-
-    return all_claims(df)
-
-
 def table(df):
     """The cheapest way for any shape to each accuracy of the conductivity, in processor seconds, and the next method.
 
@@ -151,7 +152,7 @@ def notes(df):
         return
     for target in (1.0, 0.1, 0.01):
         yield means.in_words(df, "conductivity", target)
-    yield from filter(None, (second.in_words(df), second.more_in_words(df)))
+    yield from filter(None, (second.on_a_second_machine(df), second.with_more_ways(df)))
 
 
 def verdict(df):
@@ -161,50 +162,8 @@ def verdict(df):
     return " ".join(means.counted(df, "conductivity", target) for target in (1.0, 0.1, 0.01))
 
 
-def multipoles(df):
-    """Among spheres alone."""
-    from studies.common.searches import means
-
-    return means.multipoles(df)
-
-
-def beside_peers(df):
-    """Programs of others on the same bodies, searched for in the same way."""
-    from studies.common.searches import means
-
-    return means.beside_peers(df)
-
-
-def on_a_second_machine(df):
-    """Whether the same methods win there."""
-    from studies.frontier import second
-
-    return second.in_words(df)
-
-
-def with_more_ways(df):
-    """Whether the same methods win where no way is the FFT's alone."""
-    from studies.frontier import second
-
-    return second.more_in_words(df)
-
-
-def advised(df):
-    """What `recommend` is worth."""
-    from studies.frontier import advice
-
-    return advice.in_words(df)
-
-
 def who_wins(df):
     """With the names of scenes."""
     from studies.common.searches import means
 
     return " ".join(means.in_words(df, "conductivity", target) for target in (1.0, 0.1, 0.01))
-
-
-def plot(df):
-    """Cost over error, a panel for each scene."""
-    from studies.common.searches.figure import draw
-
-    return draw(df)

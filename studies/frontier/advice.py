@@ -38,8 +38,8 @@ def claims(df):
     yield "effective: intervals that hold, share", share, f">= {HOLD}"
 
 
-def in_words(df):
-    """What it is worth, in numbers."""
+def advised(df):
+    """What `recommend` is worth."""
     every, found = asked.all_told(df), there(df)
     if not found:
         return "Of none it is known yet."

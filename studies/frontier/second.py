@@ -126,8 +126,8 @@ def factors(ways):
     return {name: statistics.median(each) for name, each in found.items()}
 
 
-def in_words(df):
-    """What came of it, as sentences; empty without rows."""
+def on_a_second_machine(df):
+    """Whether the same methods win there."""
     other = there()
     if other is None:
         return ""
@@ -174,8 +174,8 @@ def _scenes(ways):
     return dict.fromkeys(scene for scene, _ in ways)
 
 
-def more_in_words(df):
-    """What the DEM and elements gain by ways that the record has for the FFT alone, or on few scenes."""
+def with_more_ways(df):
+    """Whether the same methods win where no way is the FFT's alone."""
     other = there()
     ways = {} if other is None else fairer(df, other)
     if not ways:

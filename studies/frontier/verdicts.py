@@ -14,8 +14,12 @@ NAMES = {"dem": "DEM", "fft": "FFT", "fem-p1": "FEM, degree 1"}
 MANY = 10
 
 
-def all_claims(df):
-    """All claims whose rows are there."""
+def claims(df):
+    """Who was expected to win, and how far ways differ at one value of their knobs.
+
+    The guesses were set before any search, and what half of the scenes may differ by once errors at these values had
+    been looked at on some of them.
+    """
     each = means.longest(df[df["scene"].isin(SCENES)])
     wide = each.pivot(index="scene", columns="way", values="point_k")
     for way, limit in APART.items():

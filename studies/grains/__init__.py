@@ -8,6 +8,7 @@ apart at least, against multipoles. Grains have the radius 1, the medium the con
 All is by the laws of `demheat.grains`, discs of gaps half a radius wide; `wide` is with discs of a whole radius.
 """
 
+from demheat.runtime.lazy import lazy_names
 from studies.grains.cases import (
     CONTACTS,
     CONTRASTS,
@@ -18,7 +19,9 @@ from studies.grains.cases import (
     NARROW,
     REALISATIONS,
 )
-from studies.harness.pick import largest, pick, present
+from studies.harness.pick import largest, pick
+
+__getattr__, __dir__ = lazy_names(__name__, {"studies.grains.tables": ("table",), "studies.grains.figure": ("plot",)})
 
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
@@ -68,12 +71,12 @@ def claims(df):
     Limits were set after a first look at a few rows, but for those of the beds.
     """
     arrays = pick(df, part="array")
-    yield from present(_array_claims(arrays[arrays["contrast"] >= GOOD]))
+    yield from _array_claims(arrays[arrays["contrast"] >= GOOD])
     poor = arrays[(arrays["contrast"] == CONTRASTS[0]) & (arrays["gap"] >= NARROW)]
     least = poor["error_percent"].abs().min() if len(poor) else None
-    yield from present([("arrays, contrast 10, gaps of 0.03 and more: least error, %", least, ">= 15")])
-    yield from present(_contact_claims(pick(df, part="contact")))
-    yield from present(_bed_claims(pick(df, part="bed")))
+    yield "arrays, contrast 10, gaps of 0.03 and more: least error, %", least, ">= 15"
+    yield from _contact_claims(pick(df, part="contact"))
+    yield from _bed_claims(pick(df, part="bed"))
 
 
 def _array_claims(rows):
@@ -99,21 +102,3 @@ def _bed_claims(rows):
     """Nearly touching spheres at random: of the same sign and size as in arrays."""
     good = rows[rows["contrast"] >= GOOD]
     yield "beds, contrasts from 100: most that is missing, k of the medium", largest(good, "missing"), 3.0
-
-
-def table(df):
-    """Conductivities over the medium's (of contacts: conductances), errors, and what is missing, in k of the medium.
-
-    At a gap of 0.3 more is missing of body-centred arrays than at 0.1: their second neighbours, 0.42 apart there, are
-    0.66 apart here, beyond the widest gap of a pair, half a radius.
-    """
-    from studies.grains.tables import lines
-
-    return lines(df)
-
-
-def plot(df):
-    """Errors against the gap; against the radius of contacts; networks beside the continuum."""
-    from studies.grains.figure import draw
-
-    return draw(df)

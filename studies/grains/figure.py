@@ -15,8 +15,8 @@ WIDEST = Gap(conductivity=1.0).widest
 MARKS = {10.0: "o", 100.0: "s", 1000.0: "^"}
 
 
-def draw(df):
-    """Three panels."""
+def plot(df):
+    """Errors against the gap; against the radius of contacts; networks beside the continuum."""
     from matplotlib import pyplot
 
     figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(14, 4.8))

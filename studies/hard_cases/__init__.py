@@ -26,8 +26,12 @@ inequality for cubic arrays), duality for layers.
 
 import json
 
-from studies.harness.pick import present
+from demheat.runtime.lazy import lazy_names
 from studies.harness.tolerance import Tolerance
+
+__getattr__, __dir__ = lazy_names(
+    __name__, {"studies.hard_cases.tables": ("table",), "studies.hard_cases.figure": ("plot",)}
+)
 
 EACH = {
     "contrast": 6, "gap": 6, "cut": 4, "ratio": 2, "dense": 1, "thin": 7, "shell": 5, "slender": 5, "islands": 5,
@@ -81,10 +85,6 @@ def claims(df):
     elements, plain packings, the paper's network, plain voxels) are known to be too sure of themselves: that one in
     twenty of their answers may be is what 95 % intervals leave, and was set when 3 of 200 were known.
     """
-    yield from present(_claims(df))
-
-
-def _claims(df):
     from studies.hard_cases.means import JUDGED, is_main, share, verdicts
 
     each = verdicts(df)
@@ -126,20 +126,3 @@ def words(df):
         f"are silently wrong ({unjudged} have bounds too wide to judge by); of {df['relations'].sum():.0f} "
         f"invariants {df['broken'].sum():.0f} are broken"
     )
-
-
-def table(df):
-    """Who holds where: cases of each family by method, right / refused / warned / silently wrong.
-
-    Those whose certain bounds are too wide to judge by are left out; a scene that refuses itself has no method.
-    """
-    from studies.hard_cases.tables import lines
-
-    return lines(df)
-
-
-def plot(df):
-    """Outcomes by method and family, and the errors of what is verified or warned of."""
-    from studies.hard_cases.figure import draw
-
-    return draw(df)

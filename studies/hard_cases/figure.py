@@ -18,8 +18,8 @@ FLOOR = 1e-4
 CEILING = 1e6
 
 
-def draw(df):
-    """Bars above, errors below."""
+def plot(df):
+    """Outcomes by method and family, and the errors of what is verified or warned of."""
     from matplotlib import pyplot
 
     each = verdicts(df)

@@ -7,8 +7,11 @@ from studies.hard_cases.means import title, verdicts
 SHOWN = ("verified", "refused", "warned", "wrong")
 
 
-def lines(df):
-    """Counts of the four outcomes in each cell, and of all methods and families."""
+def table(df):
+    """Who holds where: cases of each family by method, right / refused / warned / silently wrong.
+
+    Those whose certain bounds are too wide to judge by are left out; a scene that refuses itself has no method.
+    """
     each = verdicts(df)
     each["method"] = each["method"].str.split(",").str[0].map(title)
     families, names = (list(dict.fromkeys(each[column])) for column in ("family", "method"))

@@ -102,12 +102,17 @@ def unfinished(study, df):
     return there not in (every, {case_key(case) for case in study.CASES if study.QUICK(case)})
 
 
+def with_rows(study, df):
+    """Claims of a study one after another, but for those whose rows do not exist: a quick run has no full ones."""
+    return (claim(*each) for each in study.claims(df) if each[1] is not None)
+
+
 def _yielded(study, df, *, quiet=False):
     """Claims up to the first that raises an exception, and that exception."""
     claims = []
     try:
-        for each in study.claims(df):
-            claims.append(claim(*each))
+        for each in with_rows(study, df):
+            claims.append(each)
     except Exception as error:
         if not quiet:
             traceback.print_exc()

@@ -81,8 +81,3 @@ def largest(rows, column):
 def order(sizes, errors):
     """Slope of log |error| over log size by least squares."""
     return float(np.polyfit(np.log(sizes), np.log(np.abs(errors)), 1)[0])
-
-
-def present(claims):
-    """Claims whose rows exist: a quick run has no full rows to judge."""
-    return (claim for claim in claims if claim[1] is not None)

@@ -7,7 +7,7 @@ A study is a module with
 - `QUICK(case)`, true for the cases of a quick run;
 - `run(**case)`, a dict of metrics; costs it measures itself (`cost.measured`) replace the whole run's, and a "status"
   with a "note" says of a refusal that it is one;
-- `claims(df)`, pairs of a sentence with a value and a limit;
+- `claims(df)`, pairs of a sentence with a value, None where its rows do not exist, and a limit;
 - optionally `plot(df)`, a figure where one says more than the table: without, it is one of the claims; `VALUES(case)`,
   true for the cases of which nobody asks what they cost, or `VALUES = True` for all: rows have none, and are made side
   by side;
@@ -25,7 +25,8 @@ A study is a module with
   case by its key alone, None if it is none: rows of a guest stay, and are drawn, when it is no longer there.
 
 One that is too long for a file is a folder of its name. These stand in `__init__`; what computes is in `rows`, what is
-made of rows in `errors` or `means`, lines of the table in `tables`, the drawing in `figure`. Errors are defined by
+made of rows in `errors` or `means`, `table` in `tables`, `plot` in `figure`: where such a function needs no more than
+the rows, `__init__` names its file to `lazy_names`, and no row's process loads it. Errors are defined by
 `demheat.referee` alone.
 """
 

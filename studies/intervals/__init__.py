@@ -16,7 +16,12 @@ What methods close in on (`Field.extrapolated`) has an interval of its own, whic
 seeds that nothing was changed because of.
 """
 
+from demheat.runtime.lazy import lazy_names
 from studies.intervals.scenes import KINDS
+
+__getattr__, __dir__ = lazy_names(
+    __name__, {"studies.intervals.means": ("table",), "studies.intervals.figure": ("plot",)}
+)
 
 EACH = 22  # Scenes of a kind
 # Methods that cost more are asked for the first of each kind.
@@ -196,17 +201,3 @@ def limits(df):
 def _scenes(df):
     """Scenes of which methods answer by themselves."""
     return len(df.loc[~df["method"].isin(LIMITS) & (df["seed"] < EACH), ["scene", "seed"]].drop_duplicates())
-
-
-def table(df):
-    """Intervals that hold, of all that there are, by kind of scene and method."""
-    from studies.intervals.means import lines
-
-    return lines(df)
-
-
-def plot(df):
-    """What each method says of its error against its error."""
-    from studies.intervals.figure import draw
-
-    return draw(df)

@@ -11,8 +11,8 @@ LEAST, MOST = 1e-6, 1e3
 COLUMNS = 5
 
 
-def draw(df):
-    """A panel for each method: above the line the interval holds."""
+def plot(df):
+    """What each method says of its error against its error: above the line the interval holds."""
     from matplotlib import pyplot
 
     groups = list(clear(answers(df)).groupby("method", sort=False))

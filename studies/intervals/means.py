@@ -86,8 +86,8 @@ def in_words(each):
     return ", ".join(said) + "; medians are over errors that are known well and more than rounding"
 
 
-def lines(df):
-    """Held of all in each cell, and of all kinds."""
+def table(df):
+    """Intervals that hold, of all that there are, by kind of scene and method."""
     each = answers(df)
     found = []
     for kind in [*dict.fromkeys(df["scene"]), "all"]:

@@ -18,7 +18,7 @@ from demheat import referee
 from studies.common import silica_epoxy
 from studies.harness import methods
 from studies.harness.converged import converged
-from studies.harness.pick import largest, pick, present
+from studies.harness.pick import largest, pick
 from studies.harness.printed import printed
 from studies.many_inclusions.scenes import FRACTION, inside, spheres
 
@@ -105,7 +105,7 @@ def claims(df):
     that of elements per inclusion is what the paper prints. Quick rows are coarse.
     """
     df = errors(df)
-    yield from present([*_witness(df), *_dem(df), *_others(df)])
+    yield from [*_witness(df), *_dem(df), *_others(df)]
 
 
 def errors(df):

@@ -9,12 +9,14 @@ from importlib import import_module
 from pathlib import Path
 
 from demheat.referee import value_error
+from demheat.runtime.lazy import lazy_names
 from studies.harness import methods
-from studies.harness.pick import present
 from studies.harness.table import markdown
 from studies.peers import tables
 from studies.peers.cases import EVERY, QUICK_SCENES, our_beds, ours, thinned
 from studies.peers.means import AIM, COSTED, ahead, same_mesh
+
+__getattr__, __dir__ = lazy_names(__name__, {"studies.peers.figure": ("plot",)})
 
 HOME = Path(__file__).parent / "programs"
 PROGRAMS = tuple(sorted(path.stem for path in HOME.glob("*.py") if path.stem != "__init__"))
@@ -118,7 +120,7 @@ def claims(df):
 
     Layers were held to 1e-5 %, and all elements to 1e-6, before values were known.
     """
-    yield from present(_claims(df[df["status"] == "ok"]))
+    yield from _claims(df[df["status"] == "ok"])
 
 
 def _claims(df):
@@ -133,13 +135,6 @@ def _claims(df):
     for scene, ratio in ahead(df).items():
         words = f"{scene}: least CPU time to {AIM:g} % of any other program over ours but for the DEM"
         yield words, None if math.isinf(ratio) else ratio, ">= 1"
-
-
-def plot(df):
-    """Errors against costs on four bodies."""
-    from studies.peers.figure import draw
-
-    return draw(df[df["status"] == "ok"])
 
 
 def table(df):

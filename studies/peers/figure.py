@@ -12,8 +12,9 @@ MARKERS = "o^sDvP*X<>phd"
 STYLES = {"image": "-", "mesh": "--", "body": "-.", "network": ":"}
 
 
-def draw(df):
-    """Four bodies; of each program what no other of its own rows beats."""
+def plot(df):
+    """Errors against costs on four bodies; of each program what no other of its own rows beats."""
+    df = df[df["status"] == "ok"]
     from matplotlib import pyplot
 
     figure, panels = pyplot.subplots(2, 2, figsize=(12, 9), sharex=True, sharey=True)

@@ -10,8 +10,9 @@ there.
 """
 
 from demheat import referee
+from demheat.runtime.lazy import lazy_names
 from studies.harness import methods
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.resistance.cases import (
     ARRAY,
     FRACTION,
@@ -24,6 +25,10 @@ from studies.resistance.cases import (
     REALISATIONS,
     SILICA,
     USUAL,
+)
+
+__getattr__, __dir__ = lazy_names(
+    __name__, {"studies.resistance.tables": ("table",), "studies.resistance.figure": ("plot",)}
 )
 
 # A hundredth of the gap's least share: nothing is seen of it.
@@ -94,9 +99,9 @@ def claims(df):
     multipoles from 1e-8 and of voxels from half a per cent with 64. The length for the gap is held to that of Hasselman
     and Johnson's formula, as at first.
     """
-    yield from present(_array_claims(pick(df, part="array")))
-    yield from present(_neutral_claims(pick(df, part="neutral")))
-    yield from present(_gap_claims(pick(df, part="silica")))
+    yield from _array_claims(pick(df, part="array"))
+    yield from _neutral_claims(pick(df, part="neutral"))
+    yield from _gap_claims(pick(df, part="silica"))
 
 
 def _array_claims(rows):
@@ -136,22 +141,3 @@ def _gap_claims(rows):
     if None not in lengths:
         text = f"silica: largest radius, m, at which R = {USUAL:g} m2 K/W makes {GAP:.0%} at a fifth or more"
         yield text, max(radius_of(length, USUAL) for length in lengths[1:]), 1e-7
-
-
-def table(df):
-    """Errors of k at each Kapitza length (over the radius); neutral spheres; silica in epoxy.
-
-    Of the silica: k over the matrix's at each length, the mean of the realisations; the length at which it is 7 % less
-    than with perfect interfaces, beside Hasselman and Johnson's (J. Compos. Mater. 21 (1987) 508); and R for spheres of
-    a micrometre's radius.
-    """
-    from studies.resistance.tables import lines
-
-    return lines(df)
-
-
-def plot(df):
-    """Errors against the Kapitza length; the fall of the conductivity; the resistance that the gap asks for."""
-    from studies.resistance.figure import draw
-
-    return draw(df)

@@ -11,8 +11,8 @@ from studies.resistance.means import conductivity, curve, explaining, radius_of
 COLOURS = dict(zip(FRACTIONS, (BLUE, GREEN, ORANGE, RED), strict=True))
 
 
-def draw(df):
-    """Three panels."""
+def plot(df):
+    """Errors against the Kapitza length; the fall of the conductivity; the resistance that the gap asks for."""
     from matplotlib import pyplot
 
     figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(14, 4.8))

@@ -10,9 +10,12 @@ and `weak` are of `demheat.mpi`, one thread to a rank: one body on one rank and 
 rank.
 """
 
+from demheat.runtime.lazy import lazy_names
 from studies.harness import methods
-from studies.harness.pick import largest, pick, present
+from studies.harness.pick import largest, pick
 from studies.scaling.means import errors, fitted, on_ranks
+
+__getattr__, __dir__ = lazy_names(__name__, {"studies.scaling.tables": ("table",), "studies.scaling.figure": ("plot",)})
 
 NUMBERS = (100, 1000, 3000)
 PER_INCLUSION = 50  # particles
@@ -159,7 +162,7 @@ def claims(df):
     the table has them. The packing's own says nothing, as large packings repeat a smaller one.
     """
     df = errors(df)
-    yield from present([*_coarse(df), *_exponents(df), *_goal(df), *_engine(df), *_ranked(df)])
+    yield from [*_coarse(df), *_exponents(df), *_goal(df), *_engine(df), *_ranked(df)]
 
 
 def _coarse(df):
@@ -250,21 +253,6 @@ def _ranked(df):
         yield "MPI: peak memory per unknown, bytes", (full["peak_mib"] * 2**20 / full["unknowns"]).max(), 900.0
 
 
-def table(df):
-    """CPU and wall seconds of every row, of the DEM by stages, then fits.
-
-    Seconds of the DEM count its packing, cut from a tile. GiB are the peak over what was there before. Errors are those
-    of k against the multipoles' of the same spheres, the nearest there are: those of many are known to .01 %, no more;
-    coarse rows are there for their costs. "of triad" is the bandwidth of the product of the network's matrix with a
-    vector over that of the triad, a = b + s c on arrays too large for caches, right after it with as many threads.
-    Exponents are fitted to rows of 100 inclusions or 50 000 unknowns and more, each with its standard error. The last
-    lines say what 1e9 unknowns would take if the fits went on.
-    """
-    from studies.scaling.tables import lines
-
-    return lines(df)
-
-
 def notes(df):
     """What is left of version 0.2.0 once each packing is taken from both."""
     for _, row in pick(df, part="before", then=RELEASED).iterrows():
@@ -273,10 +261,3 @@ def notes(df):
             f"Version 0.2.0: without the packing, {row['then_packing_s']:.0f} of {row['then_wall_s']:.0f} s there and "
             f"{row['packing_s']:.1f} of {row['wall_s']:.0f} s now, the wall time is {now / then:.2f} of what it was."
         )
-
-
-def plot(df):
-    """Costs of methods and stages as lines of slope one and others; two threads; two ranks."""
-    from studies.scaling.figure import draw
-
-    return draw(df[df["status"] == "ok"])

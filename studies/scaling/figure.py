@@ -9,8 +9,9 @@ from studies.scaling.means import STAGES, fitted, of_stages, on_ranks
 COLOUR = dict(zip(STAGES, (GREY, ORANGE, BLUE, PINK, GREEN, RED, SKY, BLACK), strict=True))
 
 
-def draw(df):
-    """Four panels, and one more of rows on ranks where there are some."""
+def plot(df):
+    """Costs of methods and stages as lines of slope one and others; two threads; two ranks."""
+    df = df[df["status"] == "ok"]
     from matplotlib import pyplot
 
     ranked = on_ranks(df)

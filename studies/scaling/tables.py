@@ -9,8 +9,16 @@ from studies.scaling.means import STAGES, billion, efficiencies, errors, fitted
 NOTE = 100
 
 
-def lines(df):
-    """Table as a data frame: rows with their costs, then fits."""
+def table(df):
+    """CPU and wall seconds of every row, of the DEM by stages, then fits.
+
+    Seconds of the DEM count its packing, cut from a tile. GiB are the peak over what was there before. Errors are those
+    of k against the multipoles' of the same spheres, the nearest there are: those of many are known to .01 %, no more;
+    coarse rows are there for their costs. "of triad" is the bandwidth of the product of the network's matrix with a
+    vector over that of the triad, a = b + s c on arrays too large for caches, right after it with as many threads.
+    Exponents are fitted to rows of 100 inclusions or 50 000 unknowns and more, each with its standard error. The last
+    lines say what 1e9 unknowns would take if the fits went on.
+    """
     import pandas as pd
 
     df = df.reindex(columns=[*dict.fromkeys([*df.columns, *COLUMNS])])

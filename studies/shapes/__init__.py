@@ -12,8 +12,9 @@ Fields are singular beside the edges of rods and where the diagonal meets the wa
 
 import math
 
+from demheat.runtime.lazy import lazy_names
 from studies.harness import methods
-from studies.harness.pick import largest, pick, present
+from studies.harness.pick import largest, pick
 from studies.shapes.cases import (
     ADDED,
     CONTRAST,
@@ -26,6 +27,8 @@ from studies.shapes.cases import (
     SPENT_ON_ELLIPSOID,
     WARMTH,
 )
+
+__getattr__, __dir__ = lazy_names(__name__, {"studies.shapes.tables": ("table",), "studies.shapes.figure": ("plot",)})
 
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
@@ -88,10 +91,10 @@ def claims(df):
     particles. When all were known, limits that were more than three times as large, some a thousand times, came down
     to two or three times what was found.
     """
-    yield from present(_errors(df))
-    yield from present(_temperatures(df))
-    yield from present(_tensor(pick(df, part="ellipsoid")))
-    yield from present(_intervals(pick(df, part="capped rod")))
+    yield from _errors(df)
+    yield from _temperatures(df)
+    yield from _tensor(pick(df, part="ellipsoid"))
+    yield from _intervals(pick(df, part="capped rod"))
 
 
 def _words(name, row):
@@ -142,17 +145,6 @@ def _intervals(rows):
         yield f"{text}: what its interval shares with that of finite elements, % of the matrix", between, ">= 0"
 
 
-def table(df):
-    """Largest error at any contrast and fraction, %: of the conductivity, of the ellipsoid's tensor over the matrix.
-
-    Of the capped rod it is the distance from the finest elements, and no error. `interval` is half the width of the
-    method's own, % of its value. CPU seconds of the DEM are without its packing, but for the first row that needs one.
-    """
-    from studies.shapes.tables import lines
-
-    return lines(df)
-
-
 def words(df):
     """How many times nearer the FFT is than the DEM where voxels are exact or nearly so, over parts and contrasts."""
     ratios = []
@@ -161,10 +153,3 @@ def words(df):
         ratios.extend((dem["error_percent"] / fft["error_percent"]).abs())
     both = [methods.resolution({"name": name} | _at(part, name, 1)) for name in ("fft", "dem")]
     return f"with {both[0]} is {min(ratios):.0f} to {max(ratios):.0f} times nearer than the DEM with {both[1]}"
-
-
-def plot(df):
-    """Errors by shape and method; those of fibres against the contrast."""
-    from studies.shapes.figure import draw
-
-    return draw(df)

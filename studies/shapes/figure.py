@@ -11,8 +11,8 @@ from studies.shapes.tables import compared
 LEAST = 1e-5
 
 
-def draw(df):
-    """Two panels."""
+def plot(df):
+    """Errors by shape and method; those of fibres against the contrast."""
     from matplotlib import pyplot
 
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(12, 5), width_ratios=(3, 2))

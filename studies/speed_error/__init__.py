@@ -6,7 +6,17 @@ matrix, and that of the scalar FFT scheme beside Eyre-Milton's, each pair on the
 `frontier`.
 """
 
+from demheat.runtime.lazy import lazy_names
 from studies.speed_error.cases import TIMEOUT, all_cases
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "studies.speed_error.verdicts": ("claims",),
+        "studies.speed_error.tables": ("table",),
+        "studies.speed_error.means": ("packing",),
+    },
+)
 
 CASES = list(all_cases())
 # Limits that are far from the values, and why they are no nearer.
@@ -49,29 +59,3 @@ def warm_up(name, particles=None, seed=None, scene=None, *, method, **solver):
     if scene is not None:
         knobs = {} if particles is None else {"particles": particles, "seed": seed}
         methods.warm_up(method, **knobs, **solver)
-
-
-def claims(df):
-    """Kernels beside their peers on the same data; how costs scatter.
-
-    A kernel must not be slower than its peer. Costs of a quick run are too small to judge. When values were known the
-    tessellation came down from 40, 20 and 15 microseconds and once Voro++, schemes from 1e-6; what is a tie was set by
-    how costs scatter.
-    """
-    from studies.speed_error.verdicts import all_claims
-
-    return all_claims(df)
-
-
-def table(df):
-    """What a solve or a kernel costs, and over it what the same costs again, or a peer on the same data."""
-    from studies.speed_error.tables import lines
-
-    return lines(df)
-
-
-def packing(df):
-    """What a packing costs that is made on the spot."""
-    from studies.speed_error import means
-
-    return means.packing_in_words(df)

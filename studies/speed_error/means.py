@@ -12,7 +12,7 @@ def run_twice(df):
     return np.exp(abs(np.log(rows["cached_cpu_s"] / rows["cpu_s"])))
 
 
-def packing_in_words(df):
+def packing(df):
     """CPU time of the largest packing that was made on the spot, beside its solve: of the paper's network."""
     rows = df[(df["name"] == "dem-calibrated") & df["cached_cpu_s"].notna()]
     row = rows.loc[rows["particles"].idxmax()]

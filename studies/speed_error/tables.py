@@ -11,8 +11,8 @@ PEERS = {
 }
 
 
-def lines(df):
-    """One line for each pair."""
+def table(df):
+    """What a solve or a kernel costs, and over it what the same costs again, or a peer on the same data."""
     found = [line for row in df[df["status"] == "ok"].to_dict("records") for line in _lines(row)]
     return pd.DataFrame(found, columns=["what", "size", "CPU, s", "beside it", "its cost over ours"])
 

@@ -1,7 +1,7 @@
 """Claims on the rows of speed against error."""
 
 from demheat import referee
-from studies.harness.pick import pick, present
+from studies.harness.pick import pick
 from studies.speed_error import means
 from studies.speed_error.cases import COMPARED, TIGHT, TO_LIMIT
 
@@ -9,9 +9,14 @@ from studies.speed_error.cases import COMPARED, TIGHT, TO_LIMIT
 OFTEN = 20
 
 
-def all_claims(df):
-    """All claims whose rows are there."""
-    yield from present([*_kernels(df), *_schemes(df)])
+def claims(df):
+    """Kernels beside their peers on the same data; how costs scatter.
+
+    A kernel must not be slower than its peer. Costs of a quick run are too small to judge. When values were known the
+    tessellation came down from 40, 20 and 15 microseconds and once Voro++, schemes from 1e-6; what is a tie was set by
+    how costs scatter.
+    """
+    yield from [*_kernels(df), *_schemes(df)]
     again = means.run_twice(df)
     if len(again) >= OFTEN:
         yield "DEM, the same solve twice: factor within which nine costs in ten are", again.quantile(0.9), means.TIE

@@ -3,7 +3,6 @@
 import numpy as np
 
 import benchmark
-from studies.harness.pick import present
 from studies.sphere_benchmark.cases import GUEST, LADDERS, RELATIONS
 
 # At the finest resolution, median and worst error of conductivities, %; patterns of squares have corners at which
@@ -26,7 +25,7 @@ def whole(df):
 
 def all_claims(df):
     """Pairs of a sentence with a value and a limit."""
-    yield from present([_files(df), *_errors(df), *_relations(df)])
+    yield from [_files(df), *_errors(df), *_relations(df)]
 
 
 def _files(df):

@@ -7,6 +7,7 @@ import numpy as np
 import benchmark
 from demheat import referee
 from demheat.io.known import known_of, scene_of
+from demheat.terminal.commands.scores import span_of
 from studies.harness.cost import measured
 
 # Spheres between walls, with no symmetry.
@@ -41,11 +42,12 @@ def _at_points(answer, table, known):
     found = _temperatures(fields, known)
     if scene.periodic:
         found = found - found[0]
-    off = referee.value_error(found, known.temperature, scale=_span(scene, known))
+    span = span_of(scene, known.temperature)
+    off = referee.value_error(found, known.temperature, scale=span)
     row = {"temperature_percent": 100 * referee.rms(off), "worst_percent": 100 * float(np.abs(off).max())}
     if known.flux is not None and hasattr(fields[0], "flux_at"):
         # The mean flux is that of the conductivity.
-        slope = np.linalg.norm(scene.gradient) if scene.periodic else _span(scene, known) / scene.size[scene.axis]
+        slope = np.linalg.norm(scene.gradient) if scene.periodic else span / scene.size[scene.axis]
         apart = np.asarray(fields[0].flux_at(known.positions)) - known.flux
         row["flux_percent"] = 100 * referee.rms(np.linalg.norm(apart, axis=1) / (known.conductivity * slope))
     return row
@@ -59,15 +61,6 @@ def _temperatures(fields, known):
         here = known.times == time
         found[here] = field.temperature_at(known.positions[here])
     return found
-
-
-def _span(scene, known):
-    """Span of temperatures: what the load imposes, or between all that are held, told or there at the start."""
-    if scene.periodic:
-        return float(np.abs(scene.gradient) @ np.array(scene.size))
-    held = [value for value in scene.walls.values() if isinstance(value, float)]
-    start = [] if scene.initial is None else [scene.initial]
-    return float(np.ptp([*held, *start, *known.temperature]))
 
 
 def related(relation, way) -> dict:

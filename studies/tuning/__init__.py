@@ -7,9 +7,12 @@ centres, nearly touching, of strong contrast. `reference`: what multipoles or fi
 sphere, where the error of the conductivity comes from and with which power of the particle size each part falls.
 """
 
-from studies.harness.pick import pick, present
+from demheat.runtime.lazy import lazy_names
+from studies.harness.pick import pick
 from studies.tuning.cases import COARSE, GROUPS, MOST_MESHED, NEARER, OLD, PACKINGS, SCENES, SPHERE, cases
 from studies.tuning.scenes import FAMILIES, MESHED
+
+__getattr__, __dir__ = lazy_names(__name__, {"studies.tuning.tables": ("table",), "studies.tuning.figure": ("plot",)})
 
 # What another value must gain in every family to be called a clear win.
 GAIN = 0.2
@@ -78,8 +81,8 @@ def claims(df):
 
     found = means.errors(df, "unseen")
     for particles in sorted(set(found["particles"])):
-        yield from present(_levels(means, found[found["particles"] == particles], particles))
-    yield from present(_orders(means, df))
+        yield from _levels(means, found[found["particles"] == particles], particles)
+    yield from _orders(means, df)
 
 
 def _levels(means, found, particles):
@@ -137,22 +140,3 @@ def words(df):
         better = means.wins(lines[~lines["constant"].isin(OLD)], GAIN)
         parts.append(f"{' and '.join(better) if better else 'nothing'} with {particles:.0f} particles")
     return f"the median error of every kind of scene is lowered by a fifth or more by {', by '.join(parts)}"
-
-
-def table(df):
-    """Errors on unseen scenes with each constant as shipped or times a factor; the parts of the error on a sphere.
-
-    Of |errors| in per cent the median and 90th percentile, of signed ones the mean and its standard error. "order" is
-    that in the particle size, of the mean of all packings, with its standard error; "scatter" is of one packing. The
-    error itself is fitted with two powers of h, the cube root of the volume of the box for each particle.
-    """
-    from studies.tuning.tables import lines
-
-    return lines(df)
-
-
-def plot(df):
-    """Errors against the factors; parts of the error against the particle size."""
-    from studies.tuning.figure import draw
-
-    return draw(df)

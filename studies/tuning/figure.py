@@ -23,8 +23,8 @@ PARTS = {
 }
 
 
-def draw(df):
-    """Three panels."""
+def plot(df):
+    """Errors against the factors; parts of the error against the particle size."""
     from matplotlib import pyplot
 
     figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(15, 4.8))

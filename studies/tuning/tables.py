@@ -10,8 +10,13 @@ from studies.tuning.constants import CONSTANTS
 KEYS = ["shape", "contrast", "constant", "factor"]
 
 
-def lines(df):
-    """One line of each value of a constant at each number of particles, then one of each series of packings."""
+def table(df):
+    """Errors on unseen scenes with each constant as shipped or times a factor; the parts of the error on a sphere.
+
+    Of |errors| in per cent the median and 90th percentile, of signed ones the mean and its standard error. "order" is
+    that in the particle size, of the mean of all packings, with its standard error; "scatter" is of one packing. The
+    error itself is fitted with two powers of h, the cube root of the volume of the box for each particle.
+    """
     return pd.DataFrame([*_values(means.summed(means.errors(df, "unseen"))), *_series(df)])
 
 

@@ -14,8 +14,11 @@ import math
 import numpy as np
 
 from demheat import referee
-from studies.harness.pick import largest, pick, present
+from demheat.runtime.lazy import lazy_names
+from studies.harness.pick import largest, pick
 from studies.zeta2.means import below, pooled, with_bounds
+
+__getattr__, __dir__ = lazy_names(__name__, {"studies.zeta2.figure": ("plot",)})
 
 MULTIPOLE, VOXELS, S2 = "multipole", "zeta", "statistics"
 MODULES = {S2: "demheat.packing.statistics"}
@@ -112,7 +115,7 @@ def claims(df):
     values were known limits of finer grids came down to less than three times these, as did that of the lattice sums
     from 1e-8, of means from 4 %, of the truncation from 3e-4 and of Torquato's estimate from 1 %.
     """
-    yield from present([*_arrays(df), *_random(df), *_statistics(df), *_bounds(df), *_surfaces(df)])
+    yield from [*_arrays(df), *_random(df), *_statistics(df), *_bounds(df), *_surfaces(df)]
 
 
 def _arrays(df):
@@ -216,10 +219,3 @@ def notes(df):
     if len(rows):
         width = (rows["hs_upper"] - rows["hs_lower"]) / (rows["upper"] - rows["lower"])
         yield f"Hashin and Shtrikman's bounds are {width.min():.1f} to {width.max():.1f} times as wide as these."
-
-
-def plot(df):
-    """zeta_2 over f beside the polynomial; errors of voxels; what it does to bounds; S2."""
-    from studies.zeta2.figure import draw
-
-    return draw(df[df["status"] == "ok"])

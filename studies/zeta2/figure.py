@@ -18,8 +18,9 @@ LOOKS = {
 ARRAYS = {"sc": ("SC", RED), "bcc": ("BCC", GREEN), "fcc": ("FCC", BLUE)}
 
 
-def draw(df):
-    """Figure of the study's rows."""
+def plot(df):
+    """zeta_2 over f beside the polynomial; errors of voxels; what it does to bounds; S2."""
+    df = df[df["status"] == "ok"]
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(2, 2, figsize=(12, 9.2))

@@ -51,7 +51,7 @@ def test_the_finest_elements_and_all_others_are_judged():
     assert judged["off_percent"].tolist() == pytest.approx([0.8, -1.6, -3.0])
     assert walked.outside(judged)["name"].tolist() == ["dem", "fft"]
     assert walked.wrong(judged)["name"].tolist() == ["fft"]
-    assert walked.in_words(df).endswith(
+    assert walked.words(df).endswith(
         "of FEM they hold 1 of 1; of DEM they hold 0 of 1 (others are 1.6 % off); of FFT they hold 0 of 1 (others are "
         "3 % off)"
     )

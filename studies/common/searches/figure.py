@@ -15,8 +15,8 @@ FAMILIES = {"dem": "DEM", "fem": "FEM", "fft": "FFT", "multipole": "multipoles (
 BROAD, THIN = 7.0, 1.4
 
 
-def draw(df, quantity="conductivity", *, xlim=(5.0, 0.002), ticks=(1.0, 0.1, 0.01)):
-    """All panels; accuracies of the ticks are those of the headline."""
+def plot(df, quantity="conductivity", *, xlim=(5.0, 0.002), ticks=(1.0, 0.1, 0.01)):
+    """Cost over error, a panel for each scene; accuracies of the ticks are those of the headline."""
     from matplotlib import pyplot
     from matplotlib.ticker import NullFormatter
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from transient_scenes import last
 
 from demheat import Convection, Flux, Material, Radiation, Scene, Sphere, UniformSource, evolve
 from demheat.packing.cache import relaxed
@@ -14,11 +15,6 @@ from references import fem, series
 
 UNIT = Material(1.0, 1.0, 1.0)
 BOX = (1.0, 1.0, 1.0)
-
-
-def last(scene, times, **knobs):
-    *_, field = evolve(scene, times, **{"particles": 1000} | knobs)
-    return field
 
 
 def off(field, right):

@@ -101,17 +101,3 @@ def test_what_is_smaller_than_particles_is_said(crack):
     with pytest.warns(UserWarning, match=r"cracks \[0\] are small for particles of diameter"):
         found = damage.solve(CELL, cracks=[crack], particles=500)
     assert 0.9 < found.conductivity <= 1 + 1e-9
-
-
-@pytest.mark.parametrize(
-    ("make", "match"),
-    [
-        (lambda: Disc((0, 0), 1.0, (0, 0, 1)), r"Disc.center = \(0, 0\)"),
-        (lambda: Disc((0, 0, 0), 0.0, (0, 0, 1)), r"Disc.radius = 0.0"),
-        (lambda: Disc((0, 0, 0), 1.0, (0, 0, 0)), "Disc.normal = "),
-        (lambda: Rectangle((0, 0, 0), (1, 0, 0), (1, 1, 0)), "right angles"),
-    ],
-)
-def test_bad_cracks(make, match):
-    with pytest.raises(ValueError, match=match):
-        make()

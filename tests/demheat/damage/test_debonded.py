@@ -67,18 +67,3 @@ def test_a_layer_that_has_come_off_stops_the_heat():
     scene = Scene((1.0, 1.0, 1.0), Material(1.0), [layer], gradient=(1.0, 0.0, 0.0))
     assert exact.solve(debonded(scene, 1.0, seed=0)).conductivity == 0.0
     assert_allclose(exact.solve(debonded(scene, 1.0, seed=0, resistance=1e9)).conductivity, 0.0, atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("share", "knobs", "match"),
-    [
-        (1.5, {}, "share = 1.5"),
-        (0.5, {"seed": -1}, "seed = -1"),
-        (0.5, {"resistance": 1e60}, r"resistance = 1e\+60"),
-    ],
-)
-def test_bad_arguments(share, knobs, match):
-    with pytest.raises(ValueError, match=match):
-        debonded(cell(), share, **{"seed": 0} | knobs)
-    with pytest.raises(ValueError, match="scene = None"):
-        debonded(None, 0.5, seed=0)

@@ -1,7 +1,6 @@
 """Only here: links gone from one end alone, or more of them than asked; lattices beside theory."""
 
 import numpy as np
-import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from random_links import dense, each_link
 
@@ -102,18 +101,3 @@ def test_an_undamaged_body_is_that_of_the_engine():
     mine, theirs = (call(scene, particles=500, seed=2) for call in (damage.solve, demheat.solve))
     assert mine.conductivity == theirs.conductivity
     assert_array_equal(mine.samples.temperature, theirs.samples.temperature)
-
-
-@pytest.mark.parametrize(
-    ("knobs", "match"),
-    [
-        ({"removed": 1.5}, "removed = 1.5"),
-        ({"draw": -1}, "draw = -1"),
-        ({"cracks": [None]}, "cracks = "),
-        ({"particles": 5}, "particles = 5"),
-        ({"solver": "lu"}, "solver = 'lu'"),
-    ],
-)
-def test_bad_arguments(knobs, match):
-    with pytest.raises(ValueError, match=match):
-        damage.solve(CELL, **knobs)

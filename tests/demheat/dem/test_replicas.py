@@ -23,12 +23,6 @@ def test_counts():
         assert np.all(np.array(size) / counts <= 1.0001 * np.cbrt(np.prod(size) * domain.REPLICA / number))
 
 
-def test_bad_replicas():
-    scene = Scene(size=(1, 1, 1), matrix=Material(1.0), **LOADS["periodic"])
-    with pytest.raises(ValueError, match="replicas = "):
-        demheat.solve(scene, particles=10_000, replicas=3)
-
-
 def test_too_many_replicas_are_named():
     with pytest.raises(ValueError, match="replicas = 2: makes 2 x 4 x 2 replicas .* need 16000 .* fewer for 10000"):
         replica_counts(10_000, (1, 2, 1), 2)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial import ConvexHull
+from test_curved import closure
 
 from demheat.network.base import branches, row_numbers
 from demheat.network.laguerre import _matched, drop_empty_cells, laguerre, tessellated
@@ -15,17 +16,6 @@ def cloud(n=600, *, spread=0.6, seed=0, size=(1.0, 1.0, 1.0)):
     """Random weighted points: harder than any packing, some are hidden."""
     rng = np.random.default_rng(seed)
     return rng.random((n, 3)) * size, (rng.uniform(1 - spread, 1 + spread, n) * 0.5 * n ** (-1 / 3)) ** 2
-
-
-def closure(facets, centers, size):
-    """Sum of the outward facet vectors of each cell."""
-    total = np.zeros_like(centers)
-    branch = branches(centers, size, facets.indptr, facets.indices, facets.image)
-    unit = branch / np.linalg.norm(branch, axis=1)[:, None]
-    np.add.at(total, row_numbers(facets.indptr), facets.area[:, None] * unit)
-    outward = 2.0 * (facets.wall_side % 2) - 1.0
-    np.add.at(total, (facets.wall_particle, facets.wall_side // 2), facets.wall_area * outward)
-    return total
 
 
 @pytest.mark.parametrize("periodic", [True, False, (True, False, True)])
@@ -172,22 +162,6 @@ def test_against_voro(periodic):
         # Voro++ also lists facets of rounding size.
         theirs = {q for q in cell.get_neighbors() if q >= 0}
         assert set(ours) <= theirs and len(theirs) - len(set(ours)) <= 1
-
-
-@pytest.mark.parametrize(
-    "change, words",
-    [
-        (dict(centers=np.zeros((0, 3))), "centers: shape"),
-        (dict(centers=np.full((5, 3), 2.0)), "must lie in the box"),
-        (dict(centers=np.full((5, 3), np.nan)), "must lie in the box"),
-        (dict(weights=np.array([1.0, np.inf, 1, 1, 1])), "weights"),
-        (dict(weights=np.ones(4)), "weights"),
-    ],
-)
-def test_bad_input(change, words):
-    good = dict(centers=np.random.default_rng(0).random((5, 3)), weights=np.zeros(5), size=(1, 1, 1))
-    with pytest.raises(ValueError, match=words):
-        laguerre(**good | change)
 
 
 def test_too_few_points_in_a_periodic_box():

@@ -83,19 +83,6 @@ def test_everything_is_kept_by_a_cut_of_the_whole_box(block):
     assert cut(block).periodic.all()
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"size": (2, 1, 1)}, "must not exceed"),
-        ({"domain": "sphere", "size": (0.5, 0.6, 0.5)}, "must be equal"),
-        ({"size": (0.01, 0.01, 0.01)}, "no sphere"),
-    ],
-)
-def test_bad_cuts(block, arguments, words):
-    with pytest.raises(ValueError, match=words):
-        cut(block, **arguments)
-
-
 def test_cuts_that_walls_forbid(block):
     walled = block._replace(periodic=np.array([True, False, True]))
     with pytest.raises(ValueError, match="beyond the walls"):

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat.packing.base import make_packing
 from demheat.packing.neighbours import contacts, neighbours
-from demheat.packing.radii import Bidisperse, Listed
+from demheat.packing.radii import Bidisperse
 from demheat.packing.relax import relax, settle
 
 module = importlib.import_module("demheat.packing.relax")
@@ -144,22 +144,6 @@ def test_progress_is_told():
     assert seen[-1][1] == packing.provenance["mean_overlap"]
 
 
-@pytest.mark.parametrize(
-    "change, name",
-    [
-        ({"number": 99}, "allow_few"),
-        ({"phi": 0.75}, "phi"),
-        ({"radii": Listed([1.0, 2.0])}, "2 radii for 200"),
-        ({"size": (1.0, 1.0, 0.2)}, "side 2 must be"),  # 2 but not 4 of the largest radii
-        ({"size": (1.0, 1.0, 0.02), "periodic": False}, "side 2 must be"),
-        ({"radii": Bidisperse(20.0, 0.005)}, "side 0 must be"),
-    ],
-)
-def test_bad_input(change, name):
-    with pytest.raises(ValueError, match=name):
-        relax(**({"number": 200} | change))
-
-
 def test_the_part_done_follows_the_digits_of_the_overlap_or_the_steps():
     goal = SimpleNamespace(overlap=1e-4, steps=1000)
     assert module._share(10, 1e-3, 1e-2, goal) == pytest.approx(0.5)
@@ -168,3 +152,8 @@ def test_the_part_done_follows_the_digits_of_the_overlap_or_the_steps():
     for mean, first in ((2e-2, 1e-2), (1e-5, 1e-2), (0.0, 0.0)):
         assert module._share(10, mean, first, goal) == 0.01
     assert module._share(10, 1.01e-4, 1e-2, goal) == 0.95
+
+
+def test_too_wide_a_distribution():
+    with pytest.raises(ValueError, match="side 0 must be .*; use more particles"):
+        relax(200, radii=Bidisperse(20.0, 0.005))

@@ -1,6 +1,6 @@
 """Only here: a halo that misses a sample, a mirror of the wrong parity, a split of links that loses heat."""
 
-import dataclasses
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,6 +21,7 @@ from demheat.sampling.fluxes import cell_fluxes
 from demheat.sampling.halo import halo_average, halo_flux
 from demheat.sampling.particle_flux import SPLITS, particle_flux
 from demheat.scene import Flux, Layer
+from references import exact
 
 SIZE = np.array([1.0, 1.3, 0.8])
 
@@ -205,29 +206,6 @@ def test_halos_within_one_phase():
     assert_allclose(mirrored[:, 1], [-1.0, -2.0, -1.0], rtol=1e-14)
 
 
-@pytest.mark.parametrize(
-    ("knobs", "words"),
-    [
-        ({"ratio": 0.0}, "ratio = 0.0"),
-        ({"ratio": "4"}, "ratio = '4'"),
-        ({"walls": "cut"}, "walls = 'cut'"),
-        ({"walls": "mirror", "ratio": 21.0}, "ratio = 21.0"),
-        ({"same_phase": "yes"}, "same_phase = 'yes'"),
-        ({"at": [[0.5, 1.5, 0.5]]}, r"at\[0\] = .*: lies outside the box with walls"),
-        ({"at": [0.5, 1.5]}, "at of shape"),
-    ],
-)
-def test_bad_requests(knobs, words):
-    scene = Scene(size=(1, 1, 1), matrix=Material(1.0), walls={"y-": 0.0, "y+": 1.0})
-    points = np.random.default_rng(0).random((20, 3))
-    field = made(scene, points, np.ones(20), np.ones((20, 3)))
-    with pytest.raises(ValueError, match=words):
-        halo_flux(field, **knobs)
-    without = dataclasses.replace(field, stats={})
-    with pytest.raises(ValueError, match="mean_radius"):
-        halo_flux(without)
-
-
 def test_round_bodies_have_no_mirrors():
     scene = Scene(size=(1, 1, 1), matrix=Material(1.0, 1.0, 1.0), domain="sphere", walls={"round": 0.0}, initial=1.0)
     points = 0.5 + np.random.default_rng(0).uniform(-0.25, 0.25, (50, 3))
@@ -335,3 +313,11 @@ def test_a_long_thin_box_takes_no_more_cells_than_samples():
     means = halo_average(points, values, np.ones(1000), radius=0.4, size=(1e12, 1.0, 1.0), periodic=True)
     # Each lies alone in its halo.
     np.testing.assert_array_equal(means, values)
+
+
+def test_no_halo_without_particles_or_outside_of_walls():
+    field = exact.solve(Scene(size=(1, 1, 1), matrix=Material(1.0), walls={"y-": 0.0, "y+": 1.0}))
+    with pytest.raises(ValueError, match="mean_radius"):
+        halo_flux(field)
+    with pytest.raises(ValueError, match=r"at\[0\] = .*: lies outside the box with walls"):
+        halo_flux(replace(field, stats={"mean_radius": 0.05}), at=[[0.5, 1.5, 0.5]])

@@ -76,9 +76,3 @@ def test_round_bodies_by_hand():
     middle = np.array([[1.0, 1.0, 1.0], [1.0, 0.2, 1.0]])
     assert np.isnan(bodies.outward(middle, "round", "cylinder-y", (2, 3, 2))).all()
     assert_array_equal(bodies.outward(middle, "y+", "cylinder-y", (2, 3, 2)), [[0, 1, 0], [0, 1, 0]])
-
-
-@pytest.mark.parametrize("domain", ["cone", None, ["box"]])
-def test_unknown_domains_are_refused(domain):
-    with pytest.raises(ValueError, match="domain = .*: must be one of box, cylinder-x"):
-        bodies.check_name("domain", domain)

@@ -58,24 +58,6 @@ def test_linear_ones_are_cut_where_they_end():
     assert_allclose(own.factor([20.0, 0.0, 520.0, 900.0]), [1.0, 1.02, 0.5, 0.5])
 
 
-@pytest.mark.parametrize(
-    "points",
-    [
-        [(0, 1)],
-        [(1, 1), (0, 2)],
-        [(0, 1), (1, np.inf)],
-        [(0, 1, 2), (1, 2, 3)],
-    ],
-)
-def test_what_is_no_table_is_refused(points):
-    for make, name in (
-        (Dependence, "Dependence.points"),
-        (lambda p: Material(1.0, dependence=p), "Material.dependence"),
-    ):
-        with pytest.raises(ValueError, match=f"{name} = .*must be two or more pairs"):
-            make(points)
-
-
 def test_a_periodic_cell_has_no_level():
     own = Material(1.0, dependence=[(0, 1), (1, 2)])
     with pytest.raises(ValueError, match="Material.dependence in phase 1 with Scene.gradient"):

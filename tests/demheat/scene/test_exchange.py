@@ -12,7 +12,7 @@ from demheat.scene.needs import EXCHANGE
 from demheat.scene.negligible import negligible
 from demheat.scene.symmetry import reduced
 from demheat.tensor import axis_loads
-from references import bracket, exact, multipole, series
+from references import bracket, multipole
 from studies.harness import methods
 
 METAL = Material(2.0, 3.0, 4.0)
@@ -88,10 +88,7 @@ def test_methods_that_do_not_know_them_say_so(name, walls):
 @pytest.mark.parametrize(
     "call",
     [
-        exact.solve,
-        multipole.solve,
         multipole.solve_axes,
-        bracket.solve,
         bracket.solve_tensor,
         axis_loads,
         reduced,
@@ -104,11 +101,6 @@ def test_methods_that_do_not_know_them_say_so(name, walls):
 def test_what_else_does_not_know_them(call, walls):
     with pytest.raises(NotImplementedError, match=EXCHANGE):
         call(scene(walls))
-
-
-def test_series_know_no_radiation():
-    with pytest.raises(NotImplementedError, match="Radiation"):
-        list(series.evolve(scene(HOT, initial=300.0), [1.0]))
 
 
 def test_a_good_conductor_near_such_a_wall_is_near():

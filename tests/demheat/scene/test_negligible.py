@@ -103,9 +103,3 @@ def test_all_of_a_material_stay_as_one_limit():
     told = negligible(cell(*many), 0.9)
     lost = exact.solve(gallery.simple_cubic(1e6, fraction=512 * 4 / 3 * np.pi * 1e-6)).conductivity / 33.0 - 1
     assert len(told.inclusions) == 512 and 0 < lost <= told.bound
-
-
-@pytest.mark.parametrize("accuracy", [0.0, 1.0, "1e-3"])
-def test_accuracies_that_are_none_are_refused(accuracy):
-    with pytest.raises(ValueError, match="accuracy"):
-        negligible(cell(), accuracy)

@@ -30,15 +30,6 @@ def layer(start, stop, resistance=0.0, material=GOOD):
     return Layer(0, start, stop, material, resistance=resistance)
 
 
-@pytest.mark.parametrize("value", [-1e-9, 1e-60, None])
-@pytest.mark.parametrize("shape", [ball(0.5, 0.5, 0.5), layer(0.2, 0.4)])
-def test_resistances_that_are_none_are_refused(shape, value):
-    kind = type(shape).__name__
-    with pytest.raises(ValueError, match=rf"^{kind}.resistance = .*: must be a finite number >= 0 m2 K/W") as error:
-        replace(shape, resistance=value)
-    assert "\n" not in str(error.value)
-
-
 def test_it_is_a_keyword_and_part_of_the_shape():
     with pytest.raises(TypeError):
         Sphere((0.5, 0.5, 0.5), 0.1, GOOD, 1e-3)

@@ -5,6 +5,7 @@ import sys
 import time
 
 import pytest
+from test_sweep import measured_apart
 
 from demheat import sweep
 from demheat.beyond import cluster
@@ -17,10 +18,6 @@ pytest.importorskip("distributed")
 def client():
     with cluster.cluster(workers=2) as found:
         yield found
-
-
-def measured_apart(rows):
-    return [{name: value for name, value in row.items() if name not in ("wall_s", "cpu_s", "when")} for row in rows]
 
 
 def test_rows_are_those_of_this_process(client, tmp_path):

@@ -1,7 +1,6 @@
 """Arrays of insulated discs: dilute ones, by finite differences, and in towers of layers."""
 
 import numpy as np
-import pytest
 from numpy.testing import assert_allclose
 from scipy.sparse import diags, identity, kron
 from scipy.sparse.linalg import cg
@@ -55,9 +54,3 @@ def test_digits():
     assert 6 < discs(0.25).digits < 13
     # With four times the waves and more functions: 0.95877855.
     assert abs(discs(0.25).conductivity - 0.95877855) < 1e-7
-
-
-@pytest.mark.parametrize(("radius", "height", "match"), [(0.0, 1, "radius"), (0.5, 1, "radius"), (0.2, 0.0, "height")])
-def test_bad_arguments(radius, height, match):
-    with pytest.raises(ValueError, match=f"{match} = "):
-        discs(radius, height=height)

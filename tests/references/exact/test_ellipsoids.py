@@ -77,20 +77,3 @@ def test_flat_pores_are_cracks():
         assert_allclose(1 + density * volume * alpha[2, 2], ellipsoids.penny_cracks(density), atol=4 * flat * density)
         # Along the discs nothing is lost but their volume.
         assert_allclose(alpha[0, 0], -1.0, atol=2 * flat)
-
-
-@pytest.mark.parametrize(
-    ("call", "match"),
-    [
-        (lambda: ellipsoids.depolarisation((1, 2)), "axes = "),
-        (lambda: ellipsoids.depolarisation((1, 0, 1)), "axes = "),
-        (lambda: ellipsoids.polarisability(-1, (1, 1, 1)), "contrast = -1"),
-        (lambda: ellipsoids.polarisability(2, (1, 1, 1), frame=np.ones((3, 3))), "frame = "),
-        (lambda: ellipsoids.dilute(2, (1, 1, 1), 1.5), "fraction = 1.5"),
-        (lambda: ellipsoids.maxwell(math.inf, (1, 1, 100), 0.5), "fraction = 0.5: too many"),
-        (lambda: ellipsoids.penny_cracks(0.4), "density = 0.4"),
-    ],
-)
-def test_bad_arguments(call, match):
-    with pytest.raises(ValueError, match=match):
-        call()

@@ -82,24 +82,3 @@ def test_along_fibres_is_the_mean():
     assert fibres.along(11.0, 0.25) == 3.5
     assert_allclose(fibres.touching("square"), math.pi / 4)
     assert_allclose(fibres.touching("hexagonal"), math.pi / (2 * math.sqrt(3)))
-
-
-@pytest.mark.parametrize(
-    ("arguments", "knobs", "match"),
-    [
-        (("cubic", 2.0, 0.3), {}, "kind = 'cubic'"),
-        (("square", -1.0, 0.3), {}, "contrast = -1.0"),
-        (("square", math.nan, 0.3), {}, "contrast = nan"),
-        (("square", 2.0, 0.79), {}, "fraction = 0.79.*0.785398"),
-        (("hexagonal", 2.0, 0.0), {}, "fraction = 0.0"),
-        (("square", 2.0, 0.3), {"resistance": -1.0}, "resistance = -1.0"),
-        (("square", 2.0, 0.3), {"order": 0}, "order = 0"),
-        (("square", math.inf, 0.7853), {"order": 64}, "nearly touching"),
-    ],
-)
-def test_bad_arguments(arguments, knobs, match):
-    with pytest.raises(ValueError, match=match):
-        fibres.conductivity(*arguments, **knobs)
-    if match == "contrast = -1.0":
-        with pytest.raises(ValueError, match="contrast = inf: must be a finite"):
-            fibres.along(math.inf, 0.2)

@@ -60,21 +60,3 @@ def test_laminates_of_laminates_are_coated_cylinders():
     found = laminate([np.eye(3), inner], [1 - f / first, f / first], (0, 1, 0))
     beta = (s - 1) / (s + 1)
     assert_allclose(np.diag(found)[:2], (1 + f * beta) / (1 - f * beta), rtol=1e-13)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "match"),
-    [
-        (([1.0, -2.0], [0.5, 0.5], (1, 0, 0)), "conductivities: -2.0"),
-        (([1.0, [[1, 2, 0], [0, 1, 0], [0, 0, 1]]], [0.5, 0.5], (1, 0, 0)), "symmetric"),
-        (([1.0, 2.0], [0.5, 0.6], (1, 0, 0)), "shares = "),
-        (([1.0, 2.0], [1.0], (1, 0, 0)), "shares = "),
-        (([1.0, 2.0], [0.5, 0.5], (0, 0, 0)), "normal = "),
-        (([1.0, 2.0], [0.5, 0.5], (1, 0)), "normal = "),
-    ],
-)
-def test_bad_arguments(arguments, match):
-    with pytest.raises(ValueError, match=match):
-        laminate(*arguments)
-    with pytest.raises(ValueError, match="resistance = -1"):
-        laminate([1.0], [1.0], (1, 0, 0), resistance=-1)

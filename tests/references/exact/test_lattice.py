@@ -137,20 +137,3 @@ def test_digits_are_honest_when_spheres_nearly_touch(fraction, contrast):
     better = lattice.solve("sc", contrast, fraction, order=59, digits=0)
     assert abs(rough.conductivity / better.conductivity - 1) <= 10.0**-rough.digits
     assert rough.digits < better.digits < lattice.MOST_DIGITS
-
-
-@pytest.mark.parametrize(
-    ("arguments", "knobs", "match"),
-    [
-        (("hcp", 2.0, 0.3), {}, "kind = 'hcp'"),
-        (("sc", -1.0, 0.3), {}, "contrast = -1.0"),
-        (("sc", math.nan, 0.3), {}, "contrast = nan"),
-        (("sc", 2.0, 0.53), {}, "fraction = 0.53.*0.523599"),
-        (("fcc", 2.0, 0.0), {}, "fraction = 0.0"),
-        (("sc", 2.0, 0.3), {"order": 4}, "order = 4"),
-        (("sc", 2.0, 0.3), {"order": 999}, "order = 999"),
-    ],
-)
-def test_bad_arguments(arguments, knobs, match):
-    with pytest.raises(ValueError, match=match):
-        lattice.solve(*arguments, **knobs)

@@ -3,22 +3,30 @@
 import math
 
 import numpy as np
+import perfect_bodies
 import pytest
 from numpy.testing import assert_allclose
+from perfect_bodies import (
+    CELL,
+    FILMS,
+    FROM_ZERO,
+    MATRIX,
+    MATRIX_THAT_SPANS,
+    MIDDLE,
+    OF_FILMS,
+    PERFECT,
+    POINTS,
+    SPANNING,
+    X,
+    beside_a_pore,
+    body,
+)
 from spared import slow_but
 
-from demheat import Box, Convection, Cylinder, Flux, Layer, Material, Radiation, Scene, Sphere
+from demheat import Box, Convection, Layer, Material, Radiation, Scene, Sphere
 from demheat.scene.perfect import INFINITE
 from references import fem
 from references.exact import lattice
-
-MATRIX, MIDDLE, PERFECT = 2.0, (0.5, 0.5, 0.5), Material(math.inf)
-X, Y, CELL = {"walls": {"x-": 20.0, "x+": 30.0}}, {"walls": {"y-": 20.0, "y+": 30.0}}, {"gradient": (10.0, 0.0, 0.0)}
-POINTS = np.random.default_rng(0).random((200, 3))
-
-
-def body(*shapes, matrix=MATRIX, **load):
-    return Scene((1.0, 1.0, 1.0), Material(matrix), list(shapes), **load)
 
 
 # Spheres that resist, in cells, are among the limits below.
@@ -40,19 +48,11 @@ def test_a_cubic_array_in_its_cell():
     assert_allclose(fem.solve(scene).conductivity / MATRIX, 3.262566264, rtol=1e-4)
 
 
-BODIES = {
-    "sphere": lambda k: body(Sphere(MIDDLE, 0.4, k), **X),
-    "across faces": lambda k: body(Sphere((0.1, 0.9, 0.5), 0.4, k), **CELL),
+BODIES = perfect_bodies.BODIES | {
     "across faces, film": lambda k: body(Sphere((0.1, 0.9, 0.5), 0.4, k, resistance=0.05), **CELL),
-    "half at a wall": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k), **X),
     "half at a wall, film": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k, resistance=0.05), **X),
-    "half at a flux": lambda k: body(Sphere((1.0, 0.5, 0.5), 0.3, k), walls={"x-": 20.0, "x+": Flux(5.0)}),
     "in a fluid": lambda k: body(Sphere((1.0, 0.5, 0.5), 0.3, k), walls={"x-": 20.0, "x+": Convection(3.0, 30.0)}),
-    "fibre across": lambda k: body(Cylinder(MIDDLE, 0.2, (0, 0, 1), k), **CELL),
-    "beside a pore": lambda k: body(
-        Sphere((0.27, 0.5, 0.5), 0.2, k), Sphere((0.75, 0.5, 0.5), 0.2, Material(0.0)), **X
-    ),
-    "shell": lambda k: body(Sphere(MIDDLE, 0.4, k), Sphere(MIDDLE, 0.3, Material(1.0)), **X),
+    "beside a pore": beside_a_pore,
 }
 
 
@@ -99,24 +99,13 @@ def test_what_differs_in_a_good_conductor_acts_on_the_rest():
 
 
 def test_bodies_that_films_part():
-    layers = Layer(0, 0.2, 0.4, PERFECT, resistance=0.1), Layer(0, 0.4, 0.7, PERFECT)
     for load in (X, CELL):
-        # Half of the matrix, and two films: 1/(.5/2 + .2).
-        assert_allclose(fem.solve(body(*layers, **load), size=0.2).conductivity, 1 / 0.45, rtol=1e-7)
+        assert_allclose(fem.solve(body(*FILMS, **load), size=0.2).conductivity, OF_FILMS, rtol=1e-7)
     whole = Layer(0, 0.0, 0.4, PERFECT, resistance=0.1), Layer(0, 0.4, 1.0, PERFECT)
     assert_allclose(fem.solve(body(*whole, **X), size=0.2).conductivity, 10.0, rtol=1e-7)
 
 
-@pytest.mark.parametrize(
-    ("scene", "expected"),
-    [
-        (body(Sphere(MIDDLE, 0.3, PERFECT), matrix=0.0, **X), 0.0),
-        (body(Layer(0, 0.0, 0.7, PERFECT), Layer(0, 0.7, 1.0, Material(2.0)), matrix=0.0, **X), 2.0 / 0.3),
-        (body(Layer(0, 0.3, 0.7, Material(1.0)), matrix=math.inf, **X), 2.5),
-        (body(Layer(0, 0.3, 0.7, Material(0.0)), matrix=math.inf, **X), 0.0),
-    ],
-    ids=["sealed", "in a pore", "matrix", "cut by a pore"],
-)
+@pytest.mark.parametrize(("scene", "expected"), FROM_ZERO.values(), ids=FROM_ZERO)
 def test_from_zero_to_infinity(scene, expected):
     assert_allclose(fem.solve(scene, size=0.2).conductivity, expected, rtol=1e-7)
 
@@ -127,17 +116,7 @@ def test_all_axes():
     assert_allclose([f.conductivity for f in fields], fields[0].conductivity, rtol=1e-3)
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        body(Layer(0, 0.3, 0.7, PERFECT), **Y),
-        body(Cylinder(MIDDLE, 0.2, (1, 0, 0), PERFECT), **CELL),
-        body(Cylinder(MIDDLE, 0.2, (1, 0, 0), PERFECT), **X),
-        body(*(Sphere((x, 0.5, 0.5), 0.25, PERFECT) for x in (0.25, 0.75)), **X),
-        body(Sphere(MIDDLE, 0.3, Material(1.0)), matrix=math.inf, **X),
-    ],
-    ids=["layer along", "fibre in a cell", "fibre between walls", "chain", "matrix"],
-)
+@pytest.mark.parametrize("scene", (SPANNING | MATRIX_THAT_SPANS).values(), ids=SPANNING | MATRIX_THAT_SPANS)
 def test_what_spans_is_infinite(scene):
     with pytest.raises(ValueError, match=INFINITE):
         fem.solve(scene, size=0.2)

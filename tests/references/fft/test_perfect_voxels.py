@@ -3,26 +3,21 @@
 import math
 
 import numpy as np
+import perfect_bodies
 import pytest
 from numpy.testing import assert_allclose
+from perfect_bodies import CELL, MATRIX, MATRIX_THAT_SPANS, MIDDLE, PERFECT, POINTS, SPANNING, X, Y, beside_a_pore, body
 from surface_bodies import brick
 
-from demheat import Box, Cylinder, Ellipsoid, Layer, LevelSet, Material, Scene, Sphere, SurfaceMesh, Union
+from demheat import Box, Cylinder, Ellipsoid, Layer, LevelSet, Material, Sphere, SurfaceMesh, Union
 from demheat.scene.perfect import INFINITE
 from references import fft
 from references.exact import lattice
 from references.fft import perfect
 
-MATRIX, MIDDLE, PERFECT = 2.0, (0.5, 0.5, 0.5), Material(math.inf)
-X, Y, CELL = {"walls": {"x-": 20.0, "x+": 30.0}}, {"walls": {"y-": 20.0, "y+": 30.0}}, {"gradient": (10.0, 0.0, 0.0)}
 # A thousandth of the cell: a sixtieth of a voxel.
 THIN = 1e-3
-POINTS = np.random.default_rng(0).random((200, 3))
 pytestmark = pytest.mark.filterwarnings("ignore:gaps beside inclusions")
-
-
-def body(*shapes, matrix=MATRIX, **load):
-    return Scene((1.0, 1.0, 1.0), Material(matrix), list(shapes), **load)
 
 
 @pytest.mark.parametrize(
@@ -59,14 +54,12 @@ def test_laminates_of_layers_and_of_what_resists_are_right():
 
 
 BODIES = {
-    "across faces": lambda k: body(Sphere((0.1, 0.9, 0.5), 0.4, k), **CELL),
+    "across faces": perfect_bodies.BODIES["across faces"],
     "half at a wall": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k), **Y),
-    "held": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k), **X),
+    "held": perfect_bodies.BODIES["half at a wall"],
     "layer that resists": lambda k: body(Layer(0, 0.3, 0.7, k, resistance=0.1), **CELL),
     "a ball in a ball": lambda k: body(Sphere(MIDDLE, 0.4, k), Sphere(MIDDLE, 0.3, k), **X),
-    "beside a pore": lambda k: body(
-        Sphere((0.27, 0.5, 0.5), 0.2, k), Sphere((0.75, 0.5, 0.5), 0.2, Material(0.0)), **X
-    ),
+    "beside a pore": beside_a_pore,
 }
 
 
@@ -78,19 +71,15 @@ def test_the_limit_of_good_conductors(name):
     assert_allclose(perfect.temperature_at(POINTS), good.temperature_at(POINTS), rtol=0, atol=2e-3)
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        body(Layer(0, 0.3, 0.7, PERFECT), **Y),
-        body(Cylinder(MIDDLE, 0.2, (1, 0, 0), PERFECT), **CELL),
-        body(Cylinder(MIDDLE, 0.2, (0, 1, 0), PERFECT), **Y),
-        body(*(Sphere((x, 0.5, 0.5), 0.25, PERFECT) for x in (0.25, 0.75)), **X),
-        body(Sphere(MIDDLE, 0.3, Material(1.0)), matrix=math.inf, **X),
-        body(Box(MIDDLE, (1.0, 0.6, 0.6), PERFECT), **CELL),
-        body(Box(MIDDLE, (THIN, 0.6, 0.6), Material(1.0)), matrix=math.inf, **CELL),
-    ],
-    ids=["layer along", "fibre in a cell", "fibre between walls", "chain", "matrix", "box", "beside a plate"],
-)
+WIDE = SPANNING | MATRIX_THAT_SPANS
+WIDE |= {
+    "fibre along y": body(Cylinder(MIDDLE, 0.2, (0, 1, 0), PERFECT), **Y),
+    "box": body(Box(MIDDLE, (1.0, 0.6, 0.6), PERFECT), **CELL),
+    "beside a plate": body(Box(MIDDLE, (THIN, 0.6, 0.6), Material(1.0)), matrix=math.inf, **CELL),
+}
+
+
+@pytest.mark.parametrize("scene", WIDE.values(), ids=WIDE)
 @pytest.mark.filterwarnings("ignore:.*thinner than a voxel:UserWarning", "ignore:.*smaller than a voxel:UserWarning")
 def test_what_spans_is_infinite(scene):
     with pytest.raises(ValueError, match=INFINITE):

@@ -10,6 +10,7 @@ import time
 import types
 from pathlib import Path
 
+import meshed_here
 import numpy as np
 import pytest
 
@@ -24,11 +25,8 @@ ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture(autouse=True)
-def gmsh_or_skip():
-    try:
-        mesh.load_gmsh()
-    except ImportError as error:
-        pytest.skip(str(error))
+def with_gmsh():
+    meshed_here.gmsh_or_skip()
 
 
 def ball(radius=1 / 3):

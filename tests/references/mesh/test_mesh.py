@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from meshed_here import mesh_here
+from meshed_here import gmsh_or_skip, mesh_here
 from numpy.testing import assert_allclose
 
 from demheat.scene import Layer, Material, Scene, Sphere
@@ -20,12 +20,9 @@ WALLS = {"y-": 0.0, "y+": 1.0}
 
 
 @pytest.fixture(autouse=True)
-def gmsh_or_skip(request):
+def with_gmsh(request):
     if "missing" not in request.node.name:
-        try:
-            mesh.load_gmsh()
-        except ImportError as error:
-            pytest.skip(str(error))
+        gmsh_or_skip()
 
 
 def scene(*inclusions, size=(1.0, 1.0, 1.0), **load):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshed_here import mesh_here
+from meshed_here import gmsh_or_skip, mesh_here
 from numpy.testing import assert_allclose
 
 from demheat.scene import Material, Scene, Sphere
@@ -74,10 +74,7 @@ def test_features_that_reach_everywhere_are_heard_where_they_ask_for_least():
 
 
 def test_a_mesh_with_a_table_is_as_fine_as_with_fields_of_gmsh(monkeypatch):
-    try:
-        mesh.load_gmsh()
-    except ImportError as error:
-        pytest.skip(str(error))
+    gmsh_or_skip()
     rng, metal = np.random.default_rng(0), Material(10.0)
     places = 0.2 + 0.3 * np.stack(np.meshgrid(*[np.arange(3)] * 2), axis=-1).reshape(-1, 2)
     spheres = [Sphere((x, y, 0.5 + 0.2 * rng.random()), 0.08, metal) for x, y in places]

@@ -2,6 +2,7 @@
 
 import math
 
+import meshed_here
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -87,8 +88,5 @@ def test_a_sphere_whose_pole_was_near_a_periodic_face_is_meshed_at_once():
         [Sphere((0.95132941, 0.38179127, 0.36558301), 0.089470, METAL)],
         gradient=(1.0, 0.0, 0.0),
     )
-    try:
-        mesh.load_gmsh()
-    except ImportError as error:
-        pytest.skip(str(error))
+    meshed_here.gmsh_or_skip()
     assert mesh.make(of, size=0.15, order=1).stats["attempts"] == 1

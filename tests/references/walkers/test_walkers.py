@@ -107,19 +107,6 @@ def test_axes_alike_are_averaged():
         assert_allclose(np.linalg.norm(found, axis=1), 1.0)
 
 
-@pytest.mark.parametrize(
-    ("knobs", "words"),
-    [
-        ({"walks": 99}, "walks = 99: must be an integer >= 100"),
-        ({"radius": 0.0}, "radius = 0.0: must be a length > 0 m"),
-        ({"seed": -1}, "seed = -1: must be an integer >= 0"),
-    ],
-)
-def test_wrong_knobs(knobs, words):
-    with pytest.raises(ValueError, match=words):
-        walkers.solve(ball(2.0), **knobs)
-
-
 def test_what_walkers_do_not_know():
     with pytest.raises(ValueError, match="scene = 3: must be a Scene"):
         walkers.solve(3)

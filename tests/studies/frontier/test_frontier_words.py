@@ -109,7 +109,7 @@ def test_advice_is_judged_by_what_effective_did():
     df = pd.DataFrame([*searches, named])
     (single,) = (value for text, value, _ in advice.claims(df) if "one solve" in text)
     assert single == 4.0
-    said = advice.in_words(rows)
+    said = advice.advised(rows)
     assert said.startswith("Of 3 pairs of scene and accuracy 1 have a closed form; `effective` got there on 1 of the")
     assert "a factor of 3 on 0, 4 in the median" in said and said.endswith("on 1 time was over.")
     # Rows of `effective` are no search.

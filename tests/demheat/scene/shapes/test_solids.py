@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
-from solid_shapes import HALF, LIMITS, MATRIX, OTHER, RING, SOLIDS, TURN, ball, torus
+from solid_shapes import HALF, LIMITS, OTHER, RING, SOLIDS, TURN, ball, cell
 
-from demheat import Layer, Scene, Sphere
+from demheat import Layer, Sphere
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
 from demheat.scene.shapes.samples import surface_points
 from demheat.scene.shapes.sections import below
@@ -171,30 +171,6 @@ def test_a_level_set_is_checked_once():
         sphere.placed((0.2, np.nan, 0.5))
 
 
-@pytest.mark.parametrize(
-    ("make", "words"),
-    [
-        (lambda: LevelSet(torus, ((0, 0, 0), (1, 1, 0)), OTHER), "the highest above the lowest"),
-        (lambda: LevelSet(torus, ((0.3,) * 3, (0.7,) * 3), OTHER), "on the limits; must be above 0 there"),
-        (lambda: LevelSet(lambda p: 1 + p[:, 0] ** 2, LIMITS, OTHER), "above 0 at all of"),
-        (lambda: LevelSet(lambda p: p, LIMITS, OTHER), "must give one finite number for each point"),
-        (lambda: LevelSet(lambda p: torus(p) + 0j, LIMITS, OTHER), "of shape .* and type complex128"),
-        (lambda: Cylinder((0, 0, 0), 0.1, (0, 0, 0), OTHER), "Cylinder.axis = .*must be a direction"),
-        (lambda: Cylinder((0, 0, 0), 0.1, (0, 0, 1), OTHER, length=0.0), "Cylinder.length = 0.0: must be None, or"),
-        (lambda: Ellipsoid((0, 0, 0), (1, 1, 0), OTHER), "Ellipsoid.semi_axes = .*three lengths > 0 m"),
-        (lambda: Box((0, 0, 0), (1, 1, 1), OTHER, rotation=np.eye(2)), "Box.rotation = .*3 x 3 rotation matrix"),
-        (lambda: Box((0, 0, 0), (1, 1, 1), OTHER, rotation=np.diag([1, 1, -1])), "right-handed"),
-        (lambda: Box((0, 0, 0), (1, 1, 1), OTHER, rotation=1.01 * np.eye(3)), "of length 1"),
-        (lambda: HalfSpace((0, 0, 0), (0, 0, 0), OTHER), "HalfSpace.outward = .*must be a direction"),
-        (lambda: Box((0, 0, 0), (1, 1, 1), OTHER, resistance=-1.0), "Box.resistance = -1.0"),
-    ],
-)
-def test_what_they_refuse(make, words):
-    with pytest.raises(ValueError, match=words) as refused:
-        make()
-    assert "\n" not in str(refused.value)
-
-
 def test_rotations_are_matrices_or_scipys():
     turn = Rotation.from_euler("xyz", [0.3, 0.5, 0.7])
     one, other = (Box((0, 0, 0), (1, 2, 3), OTHER, rotation=r) for r in (turn, turn.as_matrix()))
@@ -229,11 +205,6 @@ def test_what_planes_leave_of_boxes(seed):
     assert_allclose(part[0], np.clip(0.5 - heights[0] / sides[2], 0, 1), rtol=1e-14)
     assert_allclose(area[0], sides[0] * sides[1] * (abs(heights[0]) < sides[2] / 2), rtol=1e-14)
     assert_allclose(below(normals, -heights, sides)[0], 1 - part, atol=1e-12)
-
-
-def cell(*inclusions, walls=False):
-    load = {"walls": {"x-": 0.0, "x+": 1.0}} if walls else {"gradient": (1.0, 0.0, 0.0)}
-    return Scene((1.0, 1.0, 1.0), MATRIX, inclusions, **load)
 
 
 def fibre(x, y, radius, axis=(0, 0, 1), **knobs):

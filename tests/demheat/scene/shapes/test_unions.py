@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial import cKDTree
-from solid_shapes import MATRIX, OTHER, TURN
+from solid_shapes import MATRIX, OTHER, TURN, cell
 
-from demheat import Layer, Material, Scene, Sphere
+from demheat import Layer, Material, Sphere
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Union
 from demheat.scene.shapes.samples import surface_points
 
@@ -144,11 +144,6 @@ def test_turned_and_placed(name, points):
     once = np.min([union.distance(points + shift) for shift in shifts], axis=0)
     assert_allclose(union.distance(points, period=period), once, atol=1e-12)
     assert_allclose([union.reach(axis) for axis in np.eye(3)], union.bounds()[1], atol=1e-12)
-
-
-def cell(*inclusions, walls=False):
-    load = {"walls": {"x-": 0.0, "x+": 1.0}} if walls else {"gradient": (1.0, 0.0, 0.0)}
-    return Scene((1.0, 1.0, 1.0), MATRIX, inclusions, **load)
 
 
 def test_pairs_are_told_by_their_members():

@@ -4,10 +4,11 @@ import csv
 import re
 
 import pytest
+from test_commands import run
 
 from demheat import gallery
 from demheat.io import scenes
-from demheat.terminal.commands import compare, main, solve
+from demheat.terminal.commands import compare, solve
 
 
 @pytest.fixture
@@ -15,12 +16,6 @@ def scene(tmp_path):
     path = tmp_path / "scene.toml"
     scenes.write(gallery.sphere_in_cube(5.0), path)
     return path
-
-
-def run(capsys, *words):
-    status = main([str(word) for word in words])
-    told = capsys.readouterr()
-    return status, told.out, told.err
 
 
 def test_solve_tells_what_is_done_by_then(capsys, scene):

@@ -207,37 +207,9 @@ def test_pores_have_an_upper_bound():
         voxels.solve(gallery.simple_cubic(0.0, fraction=0.3), voxels=4)
 
 
-@pytest.mark.parametrize(
-    ("change", "says"),
-    [
-        ({"conductivity": np.ones((2, 2))}, "conductivity of shape"),
-        ({"conductivity": -np.ones((2, 2, 2))}, "conductivity of shape"),
-        ({"conductivity": np.full((2, 2, 2), 1e60)}, "conductivity of shape"),
-        ({"conductivity": "copper"}, "conductivity = "),
-        ({"spacing": (1.0, 0.0, 1.0)}, "spacing"),
-        ({"gradient": (0.0, 0.0, 0.0)}, "gradient"),
-        ({"refine": 0}, "refine"),
-        ({"refine": 10**6}, "refine = 1000000: takes"),
-        ({"tolerance": 0.0}, "tolerance"),
-        ({"threads": 0}, "threads"),
-    ],
-)
-def test_bad_images(change, says):
-    with pytest.raises(ValueError, match=says):
-        voxels.bounds(**{"conductivity": np.ones((2, 2, 2))} | change)
-
-
-@pytest.mark.parametrize(
-    ("change", "error", "says"),
-    [
-        ({"walls": {"y-": 0.0}}, NotImplementedError, "one pair of isothermal walls"),
-        ({"voxels": 0}, ValueError, "voxels"),
-        ({"voxels": 3000}, ValueError, "voxels"),
-        ({"tolerance": 2.0}, ValueError, "tolerance"),
-    ],
-)
-def test_bad_scenes(change, error, says):
-    walls = change.pop("walls", {"y-": 0.0, "y+": 1.0})
-    scene = Scene((1.0, 1.0, 1.0), Material(1.0), [Sphere((0.5, 0.5, 0.5), 0.3, Material(2.0))], walls=walls)
-    with pytest.raises(error, match=says):
-        voxels.solve(scene, **change)
+def test_bad_scenes():
+    one = Scene((1.0, 1.0, 1.0), Material(1.0), walls={"y-": 0.0})
+    with pytest.raises(NotImplementedError, match="one pair of isothermal walls"):
+        voxels.solve(one)
+    with pytest.raises(ValueError, match="voxels = 3000"):
+        voxels.solve(gallery.simple_cubic(), voxels=3000)
