@@ -1,6 +1,7 @@
 """Perfect conductors: one convention for all who take them, stated in `demheat.field`; all others refuse."""
 
 import math
+from dataclasses import replace
 import warnings
 
 import numpy as np
@@ -9,7 +10,7 @@ from method_scenes import METHODS, answered
 from numpy.testing import assert_allclose
 from perfect_bodies import MATRIX, MIDDLE, body
 
-from demheat import Cylinder, Image, Laguerre, Layer, Material, Scene, Sphere, damage, gallery, orthotropic
+from demheat import Cylinder, Image, Laguerre, Layer, Material, Scene, Sphere, damage, evolve, gallery, orthotropic
 from demheat.dem.networks import network_of
 from demheat.gate import hashin_shtrikman, wiener
 from demheat.io import scenes
@@ -100,6 +101,11 @@ def test_all_other_methods_refuse(name):
         answered(METHODS[name], spheres(MIDDLE, **X))
 
 
+def heavy(scene):
+    matrix, ball = (Material(k, density=1.0, heat_capacity=1.0) for k in (MATRIX, PERFECT))
+    return replace(scene, initial=0.0, matrix=matrix, inclusions=[Sphere(MIDDLE, 0.25, ball)])
+
+
 def beside(scene):
     """What is no method of the suite, nor in the table of the manual (`test_scenes_page`)."""
     return {
@@ -108,6 +114,7 @@ def beside(scene):
         "negligible": lambda: negligible(scene, 1e-3),
         "zeta2": lambda: multipole.zeta2(spheres(MIDDLE, **CELL)),
         "network_of": lambda: network_of(scene, relax(200, seed=0), Laguerre()),
+        "evolve": lambda: list(evolve(heavy(scene), [0.1], particles=200)),
         "damage": lambda: damage.solve(scene, particles=200),
     }
 

@@ -12,7 +12,7 @@ from demheat.scene.needs import EXCHANGE
 from demheat.scene.negligible import negligible
 from demheat.scene.symmetry import reduced
 from demheat.tensor import axis_loads
-from references import bracket, multipole
+from references import bracket, exact, multipole
 from studies.harness import methods
 
 METAL = Material(2.0, 3.0, 4.0)
@@ -88,6 +88,8 @@ def test_methods_that_do_not_know_them_say_so(name, walls):
 @pytest.mark.parametrize(
     "call",
     [
+        exact.solve,
+        multipole.solve,
         multipole.solve_axes,
         bracket.solve_tensor,
         axis_loads,
