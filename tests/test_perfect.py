@@ -1,8 +1,8 @@
 """Perfect conductors: one convention for all who take them, stated in `demheat.field`; all others refuse."""
 
 import math
-from dataclasses import replace
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest

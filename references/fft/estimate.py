@@ -30,8 +30,8 @@ HIDDEN = 1.1
 ALIKE = 2.5
 # Of images: 28 drawn ones (noise, Gaussian fields, spheres; contrasts .001 to 1000, pores) ask for up to 2.8.
 SPLIT = Splitting(64**3, 3.0)
-# Of Eyre and Milton's scheme: where four blocks meet as on a checkerboard errors fall with the power .25 at contrast 100
-# (study `intervals`, even seeds), and of the first change 4.5 is missing, 2.9 by the other.
+# Of Eyre and Milton's scheme: where four blocks meet as on a checkerboard errors fall with the power .25 at contrast
+# 100 (study `intervals`, even seeds), and 4.5 times the first change is missing, 2.9 times by the other.
 SPLIT_RINGS = SPLIT._replace(safety=5.0)
 
 
