@@ -137,6 +137,13 @@ def verdict(df):
     return " ".join(means.counted(df, "flux", target) for target in (3.0, 1.0))
 
 
+def winners(df):
+    """The same as a table."""
+    from studies.common.searches import tables
+
+    return tables.winners(df, "flux", (3.0, 1.0))
+
+
 def plot(df):
     """Cost over error, a panel for each scene."""
     from studies.common.searches import figure

@@ -162,6 +162,13 @@ def verdict(df):
     return " ".join(means.counted(df, "conductivity", target) for target in (1.0, 0.1, 0.01))
 
 
+def winners(df):
+    """The same as a table."""
+    from studies.common.searches import tables
+
+    return tables.winners(df, "conductivity", (1.0, 0.1, 0.01))
+
+
 def who_wins(df):
     """With the names of scenes."""
     from studies.common.searches import means

@@ -180,10 +180,10 @@ def _theirs(df, target):
         else:
             won.append(found)
     factors = [each.next.cpu_s / each.first.cpu_s for each in won if each.next is not None]
-    said = [f"the next costs {_between(sorted(factors))} times as much"] if factors else []
+    said = [f"the next costs {between(sorted(factors))} times as much"] if factors else []
     said += [f"on {len(won) - len(factors)} no other gets there"] if len(factors) < len(won) else []
     said += [_ties(tied)] if tied else []
-    said += [f"{_between(sorted(lost))} times the cheapest on {len(lost)}"] if lost else []
+    said += [f"{between(sorted(lost))} times the cheapest on {len(lost)}"] if lost else []
     return f"to {target:g} % on {len(won)} of {len(every)}" + (f" ({'; '.join(said)})" if said else "")
 
 
@@ -226,22 +226,30 @@ def body_of(scene):
     return first if first in STEADY else scene
 
 
-def _alone(name, found):
-    """Scenes that one method wins without a tie."""
+def won_by(name, found):
+    """Scenes that one method wins without a tie, how many are held back, their bodies, and what the next costs more."""
     won = [scene for scene, each in found.items() if len(each.tied) == 1 and each.first.family == name]
+    others, bodies = sum(scene in HELD_BACK for scene in won), len({body_of(scene) for scene in won})
+    factors = sorted(found[s].next.cpu_s / found[s].first.cpu_s for s in won if found[s].next is not None)
+    return won, others, bodies, factors
+
+
+def _alone(name, found):
+    """The same in words."""
+    won, others, bodies, factors = won_by(name, found)
     if not won:
         return f"{TITLES[name]} on none"
-    others, bodies = sum(scene in HELD_BACK for scene in won), len({body_of(scene) for scene in won})
     once = f" ({bodies} {'body' if bodies == 1 else 'bodies'})" if bodies < len(won) else ""
     each = f"{TITLES[name]} on {len(won)}{once}, {others} of them held back"
-    factors = sorted(found[s].next.cpu_s / found[s].first.cpu_s for s in won if found[s].next is not None)
     if not factors:
         return f"{each}, where no other gets there"
-    return f"{each} (the next costs {_between(factors)} times as much{_none(len(won) - len(factors))})"
+    return f"{each} (the next costs {between(factors)} times as much{_none(len(won) - len(factors))})"
 
 
-def _between(factors):
-    low, high = f"{factors[0]:.2g}", f"{factors[-1]:.2g}"
+def between(factors):
+    """From the least to the largest of sorted factors."""
+    # Two digits, and no power of ten.
+    low, high = (f"{float(f'{factor:.2g}'):g}" for factor in (factors[0], factors[-1]))
     return low if low == high else f"{low} to {high}"
 
 
@@ -257,6 +265,7 @@ __all__ = [
     "TARGETS",
     "best",
     "best_of",
+    "between",
     "counted",
     "in_words",
     "judged",
@@ -266,4 +275,5 @@ __all__ = [
     "scenes_of",
     "starred",
     "wins",
+    "won_by",
 ]

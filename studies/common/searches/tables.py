@@ -28,3 +28,28 @@ def cell(best):
     who = f"tie of {' and '.join(each.title for each in best.tied)}" if tie else best.first.title
     after = f" (next {best.next.title}, {best.next.cpu_s / best.first.cpu_s:.2g} times)" if best.next else ""
     return f"{who}: {best.first.cpu_s:.2g} s{after}"
+
+
+def winners(df, quantity, targets):
+    """How many scenes each method wins without a tie, a line for each accuracy, as a data frame."""
+    import pandas as pd
+
+    return pd.DataFrame([_line(df, quantity, target) for target in targets])
+
+
+def _line(df, quantity, target):
+    scenes = means.judged(df, quantity, target)
+    every = {scene: means.best(df, scene, quantity, target) for scene in scenes}
+    found = {scene: each for scene, each in every.items() if each is not None}
+    cells = {means.TITLES[name].removeprefix("the "): _cell(*means.won_by(name, found)) for name in means.TITLES}
+    tied, none = sum(len(each.tied) > 1 for each in found.values()), len(every) - len(found)
+    return {"to": f"{target:g} % of the {quantity}", "scenes": len(scenes)} | cells | {"tie": tied, "none": none}
+
+
+def _cell(won, others, bodies, factors):
+    """Of it the bodies and how many are held back, and what the next method costs more."""
+    if not won:
+        return "0"
+    head = f"{len(won)} ({bodies}, {others})"
+    alone = f", alone on {len(won) - len(factors)}" if len(factors) < len(won) else ""
+    return f"{head}: {means.between(factors)} times{alone}" if factors else f"{head}: alone"

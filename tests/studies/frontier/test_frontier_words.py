@@ -5,7 +5,7 @@ import json
 import pandas as pd
 import pytest
 
-from studies.common.searches import means
+from studies.common.searches import means, tables
 from studies.frontier import advice, second
 
 
@@ -41,6 +41,9 @@ def test_who_wins_in_numbers():
         "none; a tie on 1; on 1 none gets there."
     )
     assert means.judged(ROWS, "conductivity", 0.01) == []
+    (line,) = tables.winners(ROWS, "conductivity", (0.1,)).to_dict("records")
+    won = {"DEM": "1 (1, 0): 5 times", "finite elements": "1 (1, 1): alone", "FFT": "0", "tie": 1, "none": 1}
+    assert line == {"to": "0.1 % of the conductivity", "scenes": 4} | won
 
 
 def test_what_gets_farther_at_less_cost_is_the_cheapest():
