@@ -7,7 +7,8 @@ searches by the ways that the record has on few scenes or none (`cases.second_ca
 
     python -m studies.frontier.second keep OUT
 
-keeps of all of them what they reach, and at what cost, in `second.csv` beside this file. A scene of which a way was
+keeps of all of them what they reach, and at what cost, in `second.csv` beside this file, with what it has already of
+other scenes. A scene of which a way was
 disturbed there, or is missing, is left out whole.
 """
 
@@ -40,15 +41,24 @@ def make(out):
 
 
 def keep(out):
-    """Write what is kept of rows that nobody disturbed; their number."""
-    csv.field_size_limit(sys.maxsize)
-    with open(Path(out) / "frontier.csv", newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if row.get("trail") and float(row["noise"]) <= NOISY]
+    """Write what is kept of rows that nobody disturbed, beside those of other scenes; their number."""
+    rows = [row for row in _rows(Path(out) / "frontier.csv") if float(row["noise"]) <= NOISY]
+    again = {row["scene"] for row in rows}
+    rows = [*(row for row in _rows(FILE) if row["scene"] not in again), *rows]
     with replaced(FILE) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         table = csv.DictWriter(file, KEPT, extrasaction="ignore", lineterminator="\n")
         table.writeheader()
         table.writerows(rows)
     return len(rows)
+
+
+def _rows(path):
+    """Searches in a file; none without it."""
+    csv.field_size_limit(sys.maxsize)
+    if not path.exists():
+        return []
+    with open(path, newline="", encoding="utf-8") as file:
+        return [row for row in csv.DictReader(file) if row.get("trail")]
 
 
 def there():
