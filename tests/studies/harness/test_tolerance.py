@@ -99,6 +99,15 @@ def test_a_row_from_elsewhere_is_held_to_less(method, origin, near, far):
         assert bool(moved("mine", study(), CASE | {"method": method}, stored, row)) == differs
 
 
+@pytest.mark.parametrize(("upper", "differs"), [(1.0019, False), (1.0011, True)])
+def test_an_interval_is_as_wide_as_it_was(upper, differs):
+    """From another machine its ends may be anywhere in it."""
+    stored = STORED | {"dual_lower": "1.0", "dual_upper": "1.002", "machine": "another"}
+    row = {"status": "ok", "dual_lower": 1.0, "dual_upper": upper}
+    wrong = [each.column for each in moved("mine", study(), CASE | {"method": "fem"}, stored, row)]
+    assert wrong == ["dual_upper less dual_lower"] * differs
+
+
 def test_a_status_that_changes_is_named_with_its_note():
     (wrong,) = moved("mine", study(), CASE, STORED, {"status": "failed", "note": "RuntimeError: no convergence"})
     assert (wrong.column, wrong.stored) == ("status", "ok") and "no convergence" in wrong.found
