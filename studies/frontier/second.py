@@ -146,9 +146,10 @@ def on_a_second_machine(df):
     slower = ", ".join(f"{value:.2g} ({NAMES[name]})" for name, value in sorted(factors(ways).items()))
     scenes = _scenes(ways)
     out = [scene for scene in means.scenes_of(df) if scene not in scenes]
+    lacking = f" (of {', '.join(out)} rows are missing or disturbed)" if out else ""
     return (
         f"The searches on {len(scenes)} scenes were made once more on a second machine, with the same seconds, by "
-        f"commits {' and '.join(sorted(set(other['commit'])))} (of {', '.join(out)} rows are missing or disturbed). "
+        f"commits {', '.join(sorted(set(other['commit'])))}{lacking}. "
         f"There the same accuracy costs {slower} times as much, in the median. {_kept(pairs)} {_moved(pairs, ways)}"
     )
 
