@@ -52,13 +52,14 @@ REASONS = {
 # Why claims on the stored rows fail.
 FAILS = {
     "5e5 elements, halo of 11: fluxes of Table 2": (
-        "not reproduced at C: a halo of 11 radii ends before the wall there; by one as wide in metres as with 1.5e5 "
-        "elements it is, as if the paper's had one size (docs/decisions/printed.md)"
+        "not reproduced at C, where a halo of 11 radii ends before the wall; one as wide in metres as with 1.5e5 "
+        "elements is nearer on one packing, but still 1.7 % above what is printed: the cause stays open"
     ),
     "halo of 11: temperatures of Table 2": "printed is 33.4 at C, the exact field has 33.51, our network 33.52",
     "over the plane, T in degrees Celsius": "not reproduced; how the paper's network could be so near is open",
     "largest error of the flux over the flux there": (
-        "not reproduced: a halo smears the jump of the flux at the interface over its own width"
+        "not reproduced: a halo smears the jump of the flux at the interface over its own width; the paper's is off "
+        "its FEM, ours off the exact field, which linear elements as many as its are 80 % off at the interface"
     ),
 }
 PAPER = printed("fig15_16_fields")
