@@ -233,6 +233,11 @@ def test_thin_gases_take_longer_than_their_collisions():
     Growth(growth=1e-4, phi=0.05, most=4e6).check_length(100, 0.03)
 
 
+def test_few_must_be_meant():
+    with pytest.raises(ValueError, match="number = 50: .* pass allow_few=True"):
+        lsa(50, phi=0.5)
+
+
 def test_too_wide_a_distribution():
     with pytest.raises(ValueError, match="side 0 must be .*; use more spheres"):
         lsa(100, phi=0.5, radii=Bidisperse(10, 0.05))

@@ -154,6 +154,11 @@ def test_the_part_done_follows_the_digits_of_the_overlap_or_the_steps():
     assert module._share(10, 1.01e-4, 1e-2, goal) == 0.95
 
 
+def test_few_must_be_meant():
+    with pytest.raises(ValueError, match="number = 99: .* pass allow_few=True"):
+        relax(99)
+
+
 def test_too_wide_a_distribution():
     with pytest.raises(ValueError, match="side 0 must be .*; use more particles"):
         relax(200, radii=Bidisperse(20.0, 0.005))
