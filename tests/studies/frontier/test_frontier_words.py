@@ -44,6 +44,8 @@ def test_who_wins_in_numbers():
     (line,) = tables.winners(ROWS, "conductivity", (0.1,)).to_dict("records")
     won = {"DEM": "1 (1, 0): 5 times", "finite elements": "1 (1, 1): alone", "FFT": "0", "tie": 1, "none": 1}
     assert line == {"to": "0.1 % of the conductivity", "scenes": 4} | won
+    more = pd.DataFrame([*ROWS.to_dict("records"), row("ellipsoids", "dem", 0.4)])
+    assert tables.winners(more, "conductivity", (0.1,))["DEM"].item() == "2 (2, 1): 5 times, alone on 1"
 
 
 def test_what_gets_farther_at_less_cost_is_the_cheapest():
