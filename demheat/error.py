@@ -108,6 +108,8 @@ class Fine(NamedTuple):
     rough: float = 0.0
     # m: Of a ball about the middle of an unseen sphere that holds all that a method may see instead
     radius: float = 0.0
+    # Half of the interval is at least this part of what all inclusions make of the conductivity
+    least: float = 0.0
 
 
 NOTHING = Fine()
@@ -186,6 +188,9 @@ def by_refinement(
         off = shown + fine.rough
         half += off * abs(k - float(field.scene.mean_conductivities[0]))
     flux = lacks(lambda each: each.mean_flux, largest, rule.safety) + residual * _size(field.mean_flux)
+    if k:
+        surely = fine.least * abs(k - float(field.scene.mean_conductivities[0]))
+        half, flux = max(half, surely), max(flux, surely / abs(k) * _size(field.mean_flux))
     coated, kelvin = rule.coats and np.any(field.scene.parents()), math.nan
     if coated or _WARMTH.get():
         warmth = partial(_level_free, points=_points(field.scene))

@@ -89,6 +89,7 @@ def by_extrapolation(field, coarser: Callable, rule: Limit, *, residual=0.0, fin
     half = _lacks(sizes, conductivity_of, rule, order) + residual * abs(k[0])
     made = abs(k[0] - float(field.scene.mean_conductivities[0]))
     half += (unshown([misplaced(each) for each in runs], rule.ratio, rule.slow) + fine.rough) * made
+    half = max(half, fine.least * made)
     off = _lacks(sizes, lambda each: each.mean_flux, rule, order) + residual * float(np.linalg.norm(flux[0]))
     if k[0]:
         off = max(off, half / abs(k[0]) * float(np.linalg.norm(flux[0])))

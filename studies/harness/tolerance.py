@@ -121,7 +121,7 @@ def _least(case, stored):
 
 
 def _text(value):
-    return "" if value is None or value != value else str(value)
+    return "" if value is None or value != value or value == "nan" else str(value)
 
 
 def _near(old, new, tolerance):

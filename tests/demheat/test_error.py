@@ -12,7 +12,7 @@ from method_scenes import METHODS
 from demheat import Box, Laguerre, Layer, Material, Scene, Sphere, evolve, gallery, solve
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import Particles
-from demheat.error import Estimate, Refinement, beside, by_refinement, known, missing, of_conductivity_alone
+from demheat.error import Estimate, Fine, Refinement, beside, by_refinement, known, missing, of_conductivity_alone
 from demheat.scene.volumes import fractions
 from references import exact, fem, fft, multipole, series
 from references.fem import estimate as of_elements
@@ -117,6 +117,19 @@ def test_beside_edges_orders_are_no_higher_than_those_of_the_field_there():
     # Powers are tried in steps of 1/2000.
     assert half(RULE._replace(order=2.0)) == pytest.approx(told(0.9 * 4 / 3), rel=2e-3)
     assert half(RULE._replace(order=1.0)) == pytest.approx(told(1.0), rel=1e-9)
+
+
+def test_what_all_runs_see_alike_is_the_least_of_an_interval():
+    ball = Scene((1.0,) * 3, Material(1.0), [Sphere((0.5,) * 3, 0.3, Material(9.0))], gradient=(1.0, 0.0, 0.0))
+
+    def found(least):
+        return by_refinement(made(0, scene=ball), partial(coarser, scene=ball), RULE, fine=Fine(least=least))
+
+    # It makes 4.1 of 5.1; fluxes are as far off.
+    half = (found(0.5).upper - found(0.5).lower) / 2
+    assert half == pytest.approx(0.5 * 4.1, rel=1e-9)
+    assert found(0.5).flux == pytest.approx(0.5 * 4.1 / 5.1 * np.linalg.norm(made(0).mean_flux), rel=1e-9)
+    assert found(1e-3)[1:4] == found(0.0)[1:4]
 
 
 def test_what_a_method_knows_besides_counts_where_runs_tell_little():

@@ -109,6 +109,8 @@ def test_what_is_misplaced_in_all_runs_counts_besides():
     assert found.upper - exactly.upper == pytest.approx((part - shown) * 4.1, rel=1e-6)
     rough = limit(scene=ball, fine=Fine(rough=0.1))
     assert rough.upper - exactly.upper == pytest.approx(0.1 * 4.1, rel=1e-9)
+    least = limit(scene=ball, fine=Fine(least=0.5))
+    assert least.upper - least.lower == pytest.approx(2 * 0.5 * 4.1, rel=1e-9)
 
 
 def test_what_coarser_runs_do_not_tell_of_is_refused():

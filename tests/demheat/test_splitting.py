@@ -70,6 +70,17 @@ def test_where_blocks_meet_as_on_a_checkerboard_rings_know_what_they_miss():
     assert error.lower < 10.0 < error.upper
 
 
+@pytest.mark.parametrize("width", [1, 3])
+def test_on_boards_of_high_contrast_split_voxels_count_as_little_as_they_tell(width):
+    """Of contrast 1000 they change a seventeenth of what is left: three methods are off by factors, and say so."""
+    squares = np.kron([[0, 1], [1, 0]], np.ones((width, width), np.uint8))[:, :, None].repeat(2, axis=2)
+    image = Image(squares, 1.0, {0: Material(1.0), 1: Material(1000.0)})
+    scene = Scene.of_image(image, gradient=(1.0, 0.0, 0.0))
+    for field in (fft.solve(scene), fft.solve(scene, scheme="eyre-milton"), fem.solve(scene)):
+        error = field.error
+        assert error.lower < 1000**0.5 < error.upper, error
+
+
 def test_a_block_counts_in_parts(monkeypatch):
     monkeypatch.setattr("references.fft.estimate.SPLIT", fft_rule(3**3))
     error = fft.solve(cell()).error

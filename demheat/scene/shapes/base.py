@@ -73,6 +73,8 @@ class Shape(ABC):
     # How points on its surface are found, by which costs are told beforehand: by a closed "form", by a "search", or by
     # asking a "function" again and again.
     finding = "search"
+    # Angle at which neighbouring faces of a surface meet that stands for a smooth one, radians.
+    kinks = 0.0
     # What it is called in messages and in scene files: its class in small letters, if it says nothing else.
     kind: ClassVar[str]
     # What of it scene files have, besides material and resistance: fields, each with what its numbers are, a key of

@@ -20,6 +20,8 @@ MOST = 64
 FINER = 4
 # Triangles longer than this part of a pitch are halved, as cells of that side cut a surface into parts as wide.
 PART = 1.25
+# Length of the mean of normals from which on they point one way, more or less.
+ONE_WAY = 0.5
 
 
 class Patches:
@@ -39,6 +41,14 @@ class Patches:
         count, joined = len(body.triangles), self.beside[~self.sharp]
         joins = coo_matrix((np.ones(len(joined)), joined.T), shape=(count, count))
         self.own = connected_components(joins, directed=False)[1]
+
+    @property
+    def kinks(self) -> float:
+        """Root mean square of the angle between neighbours on one patch, along their edges; 0 if there are none."""
+        angle = np.where(self.sharp, 0.0, np.arccos(np.clip(self.cosine, -1.0, 1.0)))
+        start, end = self.body.vertices[self.ends].transpose(1, 0, 2)
+        length = np.where(self.sharp, 0.0, _size(end - start)[:, 0])
+        return float(np.sqrt(np.sum(length * angle**2) / max(length.sum(), 1e-300)))
 
     def samples(self, pitch: float, low=-np.inf, high=np.inf):
         """Points no more than a pitch apart in a box, or nearly so, with their areas and triangles."""
@@ -93,10 +103,12 @@ class Patches:
         counts = np.maximum(1, np.rint(np.bincount(own, areas) / each)).astype(int)
         if counts.sum() < FEWEST:
             counts = np.ceil(counts * FEWEST / counts.sum()).astype(int)
-        points = _lloyd(samples, areas, own, counts, rng)
+        points, mean = _lloyd(samples, areas, own, counts, rng, self.body.normals[triangle])
         distance, normal = surface(points)
         points = points - distance[:, None] * normal
-        return points, surface(points)[1]
+        # A point stands for several triangles: the one under it alone would tilt its plane.
+        length = _size(mean)
+        return points, np.where(length > ONE_WAY, mean / np.maximum(length, 1e-300), surface(points)[1])
 
     def facets(self, points, normals, triangle, pitch: float, low, high):
         """Points moved along normals so that the plane of each holds as much as the body over its part of a patch."""
@@ -142,10 +154,11 @@ def _halved(body, longest, low, high):
     return points[inside], areas[inside], triangle[inside]
 
 
-def _lloyd(samples, areas, own, counts, rng):
-    """So many points of each part in the middles of the samples that are nearest to them (Lloyd's algorithm)."""
+def _lloyd(samples, areas, own, counts, rng, outward):
+    """So many points of each part amid the samples nearest to them (Lloyd's algorithm), and means of normals there."""
     order = _along(samples, own)
     samples, areas, own = samples[order], areas[order], own[order]
+    columns = np.concatenate([samples, outward[order]], axis=1).T
     part = np.repeat(np.arange(len(counts)), counts)
     share = (np.arange(len(part)) - np.repeat(np.cumsum(counts) - counts, counts) + rng.random()) / counts[part]
     total = np.cumsum(areas)
@@ -156,9 +169,10 @@ def _lloyd(samples, areas, own, counts, rng):
     for _ in range(ROUNDS):
         nearest = nearest_of(_apart(points, part, samples), there)
         area = np.bincount(nearest, areas, len(points))
-        sums = np.stack([np.bincount(nearest, areas * column, len(points)) for column in samples.T], axis=1)
-        points = np.where(area[:, None] > 0, sums / np.maximum(area, 1e-300)[:, None], points)
-    return points
+        sums = np.stack([np.bincount(nearest, areas * column, len(points)) for column in columns], axis=1)
+        means = sums / np.maximum(area, 1e-300)[:, None]
+        points = np.where(area[:, None] > 0, means[:, :3], points)
+    return points, means[:, 3:]
 
 
 def _apart(points, own, samples):

@@ -176,6 +176,11 @@ class SurfaceMesh(Solid):
     def _edges(self):
         return self._patches.edges(BESIDE * float(np.ptp(self._body.vertices, axis=0).min()))
 
+    @property
+    def kinks(self) -> float:
+        """Angle at which neighbouring triangles meet on smooth parts; see `Shape.kinks`."""
+        return self._patches.kinks
+
     def edges(self, size: Sequence[float]) -> np.ndarray:
         """Points around its sharpest edges; see `Shape.edges`."""
         return self._middle + self._edges[0]

@@ -50,6 +50,8 @@ def columns_moved(column, stored, found, here=None, **origin):
         ("verdicts", '[["dem", "warned", -0.5912864124158446]]', '[["dem", "warned", -0.5912864124158449]]', False),
         ("verdicts", '[["dem", "warned", -0.5912864124158446]]', '[["dem", "wrong", -0.5912864124158446]]', True),
         ("k", "nan", "1.0", True),
+        ("k", "nan", None, False),
+        ("k", "", float("nan"), False),
         # Costs, and how the row was made.
         ("cpu_s", "1.0", 2.0, False),
         ("ratio", "1.0", 2.0, False),

@@ -5,13 +5,13 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
 from solid_shapes import MATRIX, OTHER
-from surface_bodies import brick, joined, ring
+from surface_bodies import ball, brick, joined, ring
 
-from demheat import Box, Material, Scene, SurfaceMesh, Torus, solve
+from demheat import Box, Material, Scene, Sphere, SurfaceMesh, Torus, solve
 from demheat.error import of_conductivity_alone
 from demheat.io.surfaces import read_surface
 from demheat.scene.shapes.patterns import Room
-from references import fem, fft
+from references import exact, fem, fft
 
 SIDES, MIDDLE = (0.5, 0.375, 0.75), (0.5, 0.5, 0.5)
 BOX = Box(MIDDLE, SIDES, OTHER)
@@ -135,6 +135,25 @@ def test_the_interval_of_a_cube_of_a_file_holds(tmp_path, load):
     assert_allclose(found.conductivity, 1.16877, rtol=0.004)
     with pytest.raises(NotImplementedError, match="beside edges"):
         found.extrapolated  # noqa: B018
+
+
+def test_planes_of_a_ball_of_triangles_are_those_of_what_they_stand_for():
+    """By the triangle under each point alone the conductivity was .08 % off, by means of normals it is .013 %."""
+    bad = Material(0.01)
+    right = exact.solve(Scene((1, 1, 1), Material(1.0), [Sphere(MIDDLE, 0.3, bad)], gradient=(1.0, 0.0, 0.0)))
+    scene = Scene((1, 1, 1), Material(1.0), [SurfaceMesh(*ball(halvings=4), bad)], gradient=(1.0, 0.0, 0.0))
+    found = solve(scene, particles=3000)
+    with of_conductivity_alone():
+        error = found.error
+    assert_allclose(found.conductivity, right.conductivity, rtol=3e-4)
+    assert error.lower < right.conductivity < error.upper
+
+
+def test_kinks_are_those_of_what_stands_for_smooth_surfaces():
+    assert BRICK.kinks == 0.0
+    # Means over edges: those of an octahedron's parts, 512 triangles, half as large as of 128.
+    fine, coarse = (SurfaceMesh(*ball(halvings=n), OTHER).kinks for n in (3, 2))
+    assert 0.1 < fine < 0.2 and 1.8 < coarse / fine < 2.1
 
 
 def corners(triangle):
