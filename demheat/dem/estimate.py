@@ -151,14 +151,18 @@ def _fine(field, number, law):
     share = field.fractions[1:] / max(float(field.fractions[1:].sum()), 1e-300)
     # Wider ones have more twins the more particles there are, down to the coarsest run.
     off = np.where(across < RATIO**LEVELS, SMALL / across**2, 0.0)
-    rough, least = (float(share @ np.minimum(part, 1.0)) for part in (off, _spread_out(scene, across)))
+    rough, least = (float(share @ np.minimum(part, 1.0)) for part in (off, _spread_out(field, across, diameter)))
     return Fine(np.flatnonzero(across < 1.0), rough, 0.5 * diameter, least)
 
 
-def _spread_out(scene, across):
+def _spread_out(field, across, diameter):
     """Part of what each inclusion makes that is off as points are spread over its surface by samples of it."""
-    spread = np.array([each.finding != "form" for each in scene.inclusions])
-    kinks = np.array([each.kinks for each in scene.inclusions])
+    bodies = field.scene.inclusions
+    spread = np.array([each.finding != "form" for each in bodies])
+    kinks = np.array([each.kinks for each in bodies])
+    # A function may have limits far beyond its body: that is no wider than a ball that holds as much.
+    balls = (6 * field.scene.volume / math.pi * field.fractions[1:]) ** (1 / 3)
+    across = np.maximum(np.minimum(across, balls / diameter), 1e-3)
     return np.where(spread, SPREAD_OUT / across**2 + KINKED * kinks / across, 0.0)
 
 
