@@ -88,6 +88,7 @@ NO_ROWS = {
     "demheat/scene/shapes/union.py": BODIES,
     "references/bracket/voxels/tensor.py": FORMS,
     "demheat/splitting.py": FORMS,
+    "demheat/scene/boards.py": FORMS,
     "references/exact/inclined.py": FORMS,
     "references/multipole/at_rest.py": FORMS,
     "references/multipole/turns.py": NARROW,
