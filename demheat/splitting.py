@@ -36,7 +36,7 @@ def by_splitting(field, again: Callable, rule: Splitting) -> Estimate:
     scale = float(np.linalg.norm(own.mean_flux))
     if not scale and np.any(field.mean_flux):
         raise NotImplementedError("Field.error: no heat passes the block in the middle of the image that was looked at")
-    safety = max(rule.safety, BOARDS * left_by_boards(scene))
+    safety = max(rule.safety, BOARDS * left_by_boards(block, goes_on=scene.periodic and block is scene))
     part = safety * float(np.linalg.norm(finer.mean_flux - own.mean_flux)) / scale if scale else 0.0
     part += field.stats["residual"] + ROUNDING
     half = part * abs(k)

@@ -2,48 +2,91 @@
 
 Where good and bad conductors alternate around an edge errors fall with twice the power of the field there
 (`demheat.scene.edges`): what halves of voxels change is 2^order - 1 of what is left, a fifth at contrast 100, a
-seventeenth at 1000. In noise such edges are few among others, of which that is not asked.
+seventeenth at 1000. In noise such edges are chance: few of them go on with the voxels beyond.
 """
+
+from collections import Counter
 
 import numpy as np
 
 from demheat.scene.edges import power
 
-# Part of the corners of an image from which on they tell its error; noise has a fifth.
-MOST = 0.5
-# Contrast of phases at a corner beyond which no size of voxels tells anything: two to the order is 1.005.
-BEYOND = 1e5
+# Part of the edges at which faces meet that tells a board: of those that alternate, and of those that do so two voxels
+# on, too. Noise has a fifth and an eightieth, fields of lumps a few hundredths.
+MOST, GOING_ON = 0.5, 0.1
+# Contrast at an edge beyond which no size of voxels tells anything: a hundred times what changes is left.
+BEYOND = 1e4
+# Conductivities nearer to each other than this factor are one; steps in which they are told apart.
+ALIKE, STEP = 1.5, 1.05
 
 
-def left_by_boards(scene) -> float:
-    """What is left of an image's error over what voxels split in two change, if its corners are those of boards; or 0.
+def left_by_boards(scene, *, goes_on: bool) -> float:
+    """What is left of an image's error over what voxels split in two change, if it is of boards; otherwise 0.
 
-    Raises NotImplementedError where their contrast leaves nothing to go by.
+    Whether it goes on beyond its faces as a cell does is to be said: a block out of a cell does not. Raises
+    NotImplementedError where their contrast leaves nothing to go by.
     """
     if scene.anisotropic:
         return 0.0
-    around, counts = _corners(scene.image.labels, np.array(list(scene.image.materials)))
-    k = scene.mean_conductivities[around]
-    alike = (around[:, 0] == around[:, 2]) & (around[:, 1] == around[:, 3])
-    if counts[alike].sum() <= MOST * counts.sum():
+    own, k = _told_apart(scene.mean_conductivities)
+    phases = own[np.searchsorted(np.array(list(scene.image.materials)), scene.image.labels)]
+    around, onward, counts = _edges(phases, k, goes_on)
+    meets, alternates = _meets(around), _alternates(around)
+    going_on = alternates & onward
+    least = counts[meets].sum()
+    told = alternates if counts[alternates].sum() > MOST * least else going_on
+    if counts[told].sum() <= GOING_ON * least:
         return 0.0
-    k, counts = k[alike], counts[alike]
-    if np.any(k.max(axis=1) > BEYOND * k.min(axis=1)):
+    around, counts = around[told], counts[told]
+    if np.any(around.max(axis=1) > BEYOND * around.min(axis=1)):
         raise NotImplementedError(
-            "Field.error: voxels meet as on a checkerboard of a contrast beyond 1e5, where split ones tell nothing"
+            f"Field.error: voxels meet as on a checkerboard of a contrast beyond {BEYOND:g}, where split ones tell "
+            "nothing"
         )
-    return float(np.average([1 / (2 ** (2 * power(each)) - 1) for each in k], weights=counts))
+    # Of several boards that where errors fall most slowly.
+    return max(1 / (2 ** (2 * power(each)) - 1) for each in around[counts > GOING_ON * counts.sum()])
 
 
-def _corners(labels, known):
-    """Phases around edges at which faces meet at an angle, in turn, (m, 4) int array, and how many such edges are."""
-    found = []
+def _told_apart(conductivities):
+    """Which of a few conductivities each phase has, but for a step, and these, W/(m K)."""
+    steps = np.round(np.log(np.maximum(conductivities, 1e-300)) / np.log(STEP))
+    _, first, own = np.unique(steps, return_index=True, return_inverse=True)
+    return own, conductivities[first]
+
+
+def _edges(phases, k, goes_on):
+    """Conductivities around edges between voxels, in turn, whether they alternate two voxels on, too, and how many."""
+    found, shape, end = Counter(), (len(k),) * 4 + (2,), None if goes_on else -1
     for axis in range(3):
-        plane = np.moveaxis(labels, axis, 2)
-        turn = plane[:-1, :-1], plane[1:, :-1], plane[1:, 1:], plane[:-1, 1:]
-        bent = ~(((turn[0] == turn[1]) & (turn[2] == turn[3])) | ((turn[1] == turn[2]) & (turn[3] == turn[0])))
-        phases = tuple(np.searchsorted(known, each[bent]) for each in turn)
-        # One number of four: rows would be sorted ten times as slowly.
-        found.append(np.ravel_multi_index(phases, (len(known),) * 4))
-    numbers, counts = np.unique(np.concatenate(found), return_counts=True)
-    return np.stack(np.unravel_index(numbers, (len(known),) * 4), axis=1), counts
+        for layer in np.moveaxis(phases, axis, 0):
+            near, far = (_turn(layer, *steps)[:end, :end].reshape(-1, 4) for steps in ((0, 1), (-1, 2)))
+            here = np.any(near[:, 1:] != near[:, :1], axis=1)
+            near, far = near[here], far[here]
+            onward = _alternates(k[far]) & _same_way(k[near], k[far])
+            numbers = np.ravel_multi_index((*near.T, onward.astype(int)), shape)
+            found.update(dict(zip(*np.unique(numbers, return_counts=True), strict=True)))
+    *around, onward = np.unravel_index(np.array(list(found), dtype=int), shape)
+    return k[np.stack(around, axis=1)], onward > 0, np.array(list(found.values()), dtype=float)
+
+
+def _turn(layer, before, after):
+    """Phases around each edge of a layer, as many voxels before and after it, in turn; its ends meet."""
+    corners = ((before, before), (after, before), (after, after), (before, after))
+    return np.stack([np.roll(layer, (-one, -other), axis=(0, 1)) for one, other in corners], axis=2)
+
+
+def _alternates(k):
+    """Whether both of one diagonal conduct better than both of the other."""
+    one, other = k[..., [0, 2]], k[..., [1, 3]]
+    return (one.min(axis=-1) > ALIKE * other.max(axis=-1)) | (other.min(axis=-1) > ALIKE * one.max(axis=-1))
+
+
+def _same_way(near, far):
+    """Whether the same diagonal conducts better."""
+    return (near[..., 0] > near[..., 1]) == (far[..., 0] > far[..., 1])
+
+
+def _meets(k):
+    """Whether faces meet there at an angle."""
+    apart = np.abs(np.log(np.maximum(k, 1e-300)) - np.log(np.maximum(np.roll(k, -1, axis=1), 1e-300))) > np.log(ALIKE)
+    return ~((~apart[:, 0] & ~apart[:, 2]) | (~apart[:, 1] & ~apart[:, 3]))
