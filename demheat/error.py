@@ -180,17 +180,15 @@ def by_refinement(
     k = conductivity_of(field)
     half = lacks(_corrected if rule.chance else conductivity_of, largest, rule.safety)
     half = max(half, least if _by_luck(fields) else min(least, RAISED * half)) + residual * abs(k)
+    flux = lacks(lambda each: each.mean_flux, largest, rule.safety) + residual * _size(field.mean_flux)
     if k:
         # What inclusions make of the conductivity goes with how much there is of them.
         off = [misplaced(each) for each in fields]
         # Runs are corrected for what they hold by chance: all that the first holds counts.
         shown = PLACED * float(np.abs(off[0]).sum()) if rule.chance else unshown(off, rule.ratio, rule.order)
-        off = shown + fine.rough
-        half += off * abs(k - float(field.scene.mean_conductivities[0]))
-    flux = lacks(lambda each: each.mean_flux, largest, rule.safety) + residual * _size(field.mean_flux)
-    if k:
-        surely = fine.least * abs(k - float(field.scene.mean_conductivities[0]))
-        half, flux = max(half, surely), max(flux, surely / abs(k) * _size(field.mean_flux))
+        made = abs(k - float(field.scene.mean_conductivities[0]))
+        half = max(half + (shown + fine.rough) * made, fine.least * made)
+        flux = max(flux, fine.least * made / abs(k) * _size(field.mean_flux))
     coated, kelvin = rule.coats and np.any(field.scene.parents()), math.nan
     if coated or _WARMTH.get():
         warmth = partial(_level_free, points=_points(field.scene))

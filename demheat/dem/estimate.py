@@ -41,7 +41,7 @@ SMALL = 0.4
 # Of what an inclusion makes, half of the interval is at least so much over the square of its width in particles, where
 # points are spread over its surface: how they lie leaves an error of second order whose sign is not that of the others,
 # so that runs differ by little. Balls told by functions, of radius .2 to .4 and contrasts .01 to 100 (2000 to 14 000
-# particles, seeds 0 and 2), ask for up to .063; without it 22 of 124 missed.
+# particles, seeds 0 and 2, four of 4), ask for up to .061; without it 22 of 124 missed.
 SPREAD_OUT = 0.1
 # The same of surfaces of triangles, times the angle at which neighbours meet, over the width in particles: facets turn
 # where twins are, not where triangles do. Balls of 320 to 5120 triangles (3000 to 20 000 particles) ask for up to .155.

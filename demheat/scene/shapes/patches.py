@@ -45,7 +45,7 @@ class Patches:
     @property
     def kinks(self) -> float:
         """Root mean square of the angle between neighbours on one patch, along their edges; 0 if there are none."""
-        angle = np.where(self.sharp, 0.0, np.arccos(np.clip(self.cosine, -1.0, 1.0)))
+        angle = np.arccos(np.clip(self.cosine, -1.0, 1.0))
         start, end = self.body.vertices[self.ends].transpose(1, 0, 2)
         length = np.where(self.sharp, 0.0, _size(end - start)[:, 0])
         return float(np.sqrt(np.sum(length * angle**2) / max(length.sum(), 1e-300)))

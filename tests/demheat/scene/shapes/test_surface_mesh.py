@@ -149,6 +149,16 @@ def test_planes_of_a_ball_of_triangles_are_those_of_what_they_stand_for():
     assert error.lower < right.conductivity < error.upper
 
 
+def test_facets_that_turn_where_triangles_do_not_count():
+    """A ball of 512 triangles: what runs tell is less than the error, .05 %."""
+    bad = Material(0.01)
+    right = exact.solve(Scene((1, 1, 1), Material(1.0), [Sphere(MIDDLE, 0.3, bad)], gradient=(1.0, 0.0, 0.0)))
+    scene = Scene((1, 1, 1), Material(1.0), [SurfaceMesh(*ball(), bad)], gradient=(1.0, 0.0, 0.0))
+    with of_conductivity_alone():
+        error = solve(scene, particles=8000).error
+    assert error.lower < right.conductivity < error.upper
+
+
 def test_kinks_are_those_of_what_stands_for_smooth_surfaces():
     assert BRICK.kinks == 0.0
     # Means over edges: those of an octahedron's parts, 512 triangles, half as large as of 128.
