@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat import dem
-from demheat.cheapest.cost_laws import ON_SPHERE, needed, needed_to_show, predicted, work
+from demheat.cheapest.cost_laws import ON_SPHERE, needed_to_show, predicted, work
 from demheat.cheapest.loads import Loads
 from demheat.cheapest.measures import PORE, Measures, measures
 from demheat.runtime.extras import lacking
@@ -139,11 +139,11 @@ def _multipole(loads, accuracy, memory):
         found = [_law_of("multipole", whole, loads.of_body) for whole in loads.wholes.values()]
     except NotImplementedError as error:
         return Way("multipole", {}, refused=one_line(error))
-    knobs = {"accuracy": accuracy}
+    knobs = {"accuracy": accuracy, "sure": True}
     if not loads.body.inclusions:
         return Way("multipole", knobs, accuracy)
     law, m = found[0]
-    cost = predicted(law, m, needed(law, m, accuracy, sure=False))
+    cost = predicted(law, m, needed_to_show(law, m, accuracy))
     return _within(Way("multipole", knobs, accuracy, len(loads.wholes) * cost.cpu_s, cost.bytes), memory)
 
 
@@ -245,7 +245,7 @@ def _law_of(method, scene, m):
 def _scaled(value, edge, power):
     """A knob for elements with edges so many times as long; voxels and particles are whole."""
     value *= edge**power
-    return value if power > 0 else max(int(value), 1)
+    return float(value) if power > 0 else max(int(value), 1)
 
 
 def _has_limit(name, law, loads):

@@ -1,7 +1,9 @@
 """How many degrees are enough: solutions of rising order, and what their last changes say of the rest."""
 
 import math
+from functools import partial
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,8 +25,10 @@ MOST_SECONDS, ITERATIONS = 20.0, 50
 # Of the accuracy asked for: error of b allowed where spheres exchange by cells, and residual of the linear system. That
 # of the conductivity is a hundred times less than of b.
 PRECISION, RESIDUAL = 0.1, 1e-3
-# The same where an order is given.
+# The same where an order is given, and no accuracy.
 EXACT = 1e-10
+# By default.
+ACCURACY = 1e-5
 # Bounds on the ratio of successive changes, of two degrees each, by which the rest is extrapolated.
 RATIOS = (0.2, 0.95)
 # What the rest is raised by where the gap tells that ratio: arrays of study `intervals`, even seeds, ask for .9.
@@ -33,15 +37,17 @@ SURE = 1.5
 STEADY = 0.3
 
 
-def converged(arrangement: Arrangement, *, order, accuracy, tolerance, threads=1, kept=None):
-    """Solutions of rising order, two degrees apart; the last is the answer."""
+def converged(arrangement: Arrangement, *, order, accuracy, tolerance, sure=False, threads=1, kept=None):
+    """Solutions of rising order, two degrees apart; the last is the answer. `sure` if half of its interval is asked."""
     spheres = arrangement.spheres
     highest = highest_order(spheres)
+    rest = partial(_shown, gap=smallest_gap(spheres)) if sure else by_changes
     if order is not None and order > highest:
         raise ValueError(f"order = {order}: must be <= {highest} for {len(spheres.radii)} spheres in memory and time")
+    exact, accuracy = order is not None and accuracy is None, ACCURACY if accuracy is None else accuracy
     if tolerance is None:
-        tolerance = EXACT if order is not None else max(RESIDUAL * accuracy, 1e-14)
-    precision = EXACT if order is not None else max(PRECISION * accuracy, 1e-13)
+        tolerance = EXACT if exact else max(RESIDUAL * accuracy, 1e-14)
+    precision = EXACT if exact else max(PRECISION * accuracy, 1e-13)
     wanted = FIRST_ORDER if order is None else order
     orders = [n for n in (wanted - 6, wanted - 4, wanted - 2, wanted) if n >= 1]
     history, table, reach = [homogeneous(spheres, arrangement.gradient)], None, 0
@@ -56,12 +62,13 @@ def converged(arrangement: Arrangement, *, order, accuracy, tolerance, threads=1
                 options = {"tolerance": tolerance, "guess": history[-1], "threads": threads}
                 heard = _share(history, n, max(wanted, n), done)
                 history.append(solve_order(spheres, table, arrangement.gradient, n, heard=heard, **options))
-            if order is not None or truncation(history) <= accuracy:
+            if order is not None or rest(history).left <= accuracy:
                 break
-            if _hopeless(history, accuracy, highest):
-                return _in_contact(arrangement, history, accuracy, tolerance, threads, {} if kept is None else kept)
+            if _hopeless(history, rest, accuracy, highest):
+                wanted = {"accuracy": accuracy, "tolerance": tolerance, "threads": threads}
+                return _in_contact(arrangement, history, rest, kept={} if kept is None else kept, **wanted)
             orders = [history[-1].order + 2]
-            wanted = max(wanted + 2, _needed(history, accuracy))
+            wanted = max(wanted + 2, _needed(history, rest, accuracy))
     return history
 
 
@@ -79,13 +86,13 @@ def _share(history, order, last, done):
     return lambda share: done(min(1.0, (before + share * order**3) / total))
 
 
-def _hopeless(history, accuracy, highest):
-    now, needed = history[-1].order, _needed(history, accuracy)
+def _hopeless(history, rest, accuracy, highest):
+    now, needed = history[-1].order, _needed(history, rest, accuracy)
     # The prediction at low orders is rough: half as much again is allowed for.
     return now + 2 > highest or (now >= 10 and needed > 1.5 * highest)
 
 
-def _in_contact(arrangement, plain, accuracy, tolerance, threads, kept):
+def _in_contact(arrangement, plain, rest, *, accuracy, tolerance, threads, kept):
     """The same where pairs that nearly touch are solved by all degrees; raise if that is not enough."""
     spheres, highest = arrangement.spheres, contacts.highest_order(arrangement.spheres)
     history = plain[:1]
@@ -97,20 +104,20 @@ def _in_contact(arrangement, plain, accuracy, tolerance, threads, kept):
         options = {"tolerance": tolerance, "guess": history[-1], "threads": threads, "received": kept[order].received}
         solved = solve_order(spheres, kept[order], arrangement.gradient, order, **options)
         history.append(solved._replace(pairs=len(kept[order].pairs.here)))
-        if len(history) > 3 and truncation(history) <= accuracy:
+        if len(history) > 3 and rest(history).left <= accuracy:
             return history
     history = history if len(history) > 1 else plain
     raise RuntimeError(
-        f"multipole: at order {history[-1].order} the mean flux is known to {truncation(history):.1e}, as the smallest "
+        f"multipole: at order {history[-1].order} the mean flux is known to {rest(history).left:.1e}, as the smallest "
         f"gap is {smallest_gap(spheres) * arrangement.unit:.3g} m, and no higher order fits; must be {accuracy:.1e}, "
         "the accuracy: give a larger one, or order=... to accept less"
     )
 
 
-def _needed(history, accuracy):
+def _needed(history, rest, accuracy):
     """The order that the accuracy asks for if changes go on as they do."""
-    steps = math.log(accuracy / truncation(history)) / math.log(_ratio(_changes(history)))
-    return history[-1].order + 2 * math.ceil(steps)
+    left, ratio = rest(history)
+    return history[-1].order + 2 * math.ceil(math.log(accuracy / left) / math.log(ratio))
 
 
 def _changes(history):
@@ -120,29 +127,29 @@ def _changes(history):
     return [float(np.linalg.norm(b - a)) / scale for a, b in pairwise(flux)][-3:]
 
 
-def _ratio(changes):
-    """Mean ratio of successive changes; a half where there is only one."""
-    if changes[0] == 0 or len(changes) == 1:
-        return 0.5 if changes[0] else RATIOS[0]
-    return float(np.clip((changes[-1] / changes[0]) ** (1 / (len(changes) - 1)), *RATIOS))
+class Rest(NamedTuple):
+    """Relative error that is left in the mean flux, and the ratio of successive changes that it goes by."""
+
+    left: float
+    ratio: float
 
 
-def truncation(history) -> float:
-    """Relative error left in the mean flux: twice what it is if changes go on as a geometric series.
+def by_changes(history) -> Rest:
+    """Twice what is left if changes go on as a geometric series.
 
     In a symmetric array some degrees hardly matter: the last change but one counts as well. Twice, as ratios rise
     slowly with the order where gaps are small.
     """
     changes = _changes(history)
     if not changes:
-        return 0.0
-    ratio = _ratio(changes)
+        return Rest(0.0, RATIOS[0])
+    ratio = float(np.clip(_mean_ratio(changes) if changes[0] else RATIOS[0], *RATIOS))
     before = changes[-2] * ratio if len(changes) > 2 else 0.0
-    return 2 * max(changes[-1], before) * ratio / (1 - ratio)
+    return Rest(2 * max(changes[-1], before) * ratio / (1 - ratio), ratio)
 
 
-def remainder(history, gap) -> float:
-    """Relative error expected in the mean flux; `gap` is the smallest between surfaces, over the largest diameter.
+def by_gap(history, gap) -> Rest:
+    """What is expected to be left; `gap` is the smallest between surfaces, over the largest diameter.
 
     Images of spheres in each other end in two points, whose terms fall by exp(-2 alpha) from degree to degree, where
     cosh(alpha) is the distance of the spheres' middles over their diameter: changes come to fall by no more than that,
@@ -151,13 +158,23 @@ def remainder(history, gap) -> float:
     """
     changes = _changes(history)
     if not changes:
-        return 0.0
-    found = (changes[-1] / changes[0]) ** (1 / (len(changes) - 1)) if len(changes) > 1 and changes[0] else 0.5
+        return Rest(0.0, RATIOS[0])
     least = STEADY if history[-1].pairs else math.exp(-4 * math.acosh(1 + max(gap, 0.0)))
-    ratio = min(max(found, least), RATIOS[1])
+    ratio = min(max(_mean_ratio(changes), least), RATIOS[1])
     # That from the matrix alone tells nothing, unless there is no other.
     told = changes[::-1][: max(len(history) - 2, 1)]
-    return SURE * max(change * ratio**back for back, change in enumerate(told, 1)) / (1 - ratio)
+    return Rest(SURE * max(change * ratio**back for back, change in enumerate(told, 1)) / (1 - ratio), ratio)
+
+
+def _shown(history, gap):
+    """The same with the residual of the linear system, as intervals have it."""
+    rest = by_gap(history, gap)
+    return rest._replace(left=rest.left + history[-1].residual)
+
+
+def _mean_ratio(changes):
+    """Mean ratio of successive changes; a half where there is only one, or none to begin with."""
+    return (changes[-1] / changes[0]) ** (1 / (len(changes) - 1)) if len(changes) > 1 and changes[0] else 0.5
 
 
 def field_truncation(spheres, solved, gradient) -> float:

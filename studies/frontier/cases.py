@@ -16,7 +16,7 @@ IN_TIME_S = 30.0
 # Of a scene that is there for the laws alone.
 SHORT, LONGER = 8.0, {"3000 spheres": 80.0, "primitive at 20": 40.0}
 # Ways that laws are fitted to.
-LAWS = ("dem", "fem", "fft-loose", "multipole")
+LAWS = ("dem", "fem", "fft-loose", "multipole-loose")
 # Of a quick run, beside the others.
 QUICK_SECONDS, QUICK_SCENES, QUICK_WAYS = (
     4.0,

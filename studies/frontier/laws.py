@@ -25,7 +25,7 @@ from studies.common.searches.ways import WAYS
 from studies.frontier import halves
 
 # The way that each method's law is fitted to; rules of the FFT are told apart by the scene.
-FITTED = {"dem": "dem", "fem": "fem", "fft": "fft-loose", "multipole": "multipole"}
+FITTED = {"dem": "dem", "fem": "fem", "fft": "fft-loose", "multipole": "multipole-loose"}
 # Coarser than that nothing begins: what so few elements miss they do not show.
 COARSEST = {"particles": 1000, "voxels": 24}
 # Relative errors below, a thirtieth of the finest target, are those of the linear solvers: of layers with most methods.
@@ -72,7 +72,7 @@ def _shown():
     found: dict = {}
     with halves.FILE.open(newline="", encoding="utf-8") as stream:
         for row in csv.DictReader(stream):
-            name, m = law_and_measures(row["method"], halves.part_of(row["scene"]))
+            name, m = law_and_measures(row["method"], halves.part_of(row["scene"], row["method"]))
             half = float(row["half"])
             if half > FLOOR and row["scene"] not in NEUTRAL:
                 found.setdefault(name, []).append(Tried(row["scene"], m, float(row["value"]), half, math.nan, math.nan))

@@ -20,6 +20,7 @@ from pathlib import Path
 from demheat.runtime.paths import replaced
 from studies.common.searches import means
 from studies.common.searches.search import TARGETS
+from studies.common.searches.ways import WAYS
 from studies.frontier.cases import second_cases
 from studies.harness.sound import NOISY
 
@@ -69,8 +70,9 @@ def there():
 
 
 def searches(rows):
-    """Scene, way and seconds of what was searched."""
-    return set(map(tuple, means.longest(rows[rows["trail"].notna()])[list(KEPT[:3])].to_numpy()))
+    """Scene, way and seconds of what was searched by ways for any shape, which alone are compared."""
+    every = means.longest(rows[rows["trail"].notna()])[list(KEPT[:3])].to_numpy()
+    return {tuple(each) for each in every if not WAYS[each[1]].spheres}
 
 
 def whole(wanted, other):
@@ -198,9 +200,10 @@ def with_more_ways(df):
         for (scene, target), (one, two) in moved.items()
     )
     return (
-        f"A tolerance of 1e-3 is searched for in the record by the FFT alone, and what the DEM is extrapolated to on "
-        f"few scenes. On the second machine the DEM and elements were given such a tolerance on {len(_scenes(ways))} "
-        f"scenes, and the DEM its extrapolation on all of these. {_kept(pairs, 'without these ways and with them')} "
+        f"A tolerance of 1e-3 is searched for in the record by the FFT alone of methods for any shape, and what the "
+        f"DEM is extrapolated to on few scenes. On the second machine the DEM and elements were given such a tolerance "
+        f"on {len(_scenes(ways))} scenes, and the DEM its extrapolation on all of these. "
+        f"{_kept(pairs, 'without these ways and with them')} "
         f"Of {len(pairs)} pairs of scene and accuracy {len(moved)} have other winners or ties with them"
         f"{f': {told}' if told else ''}."
     )

@@ -66,6 +66,10 @@ WAYS = {
     "fft-image": Way("FFT", "fft", "fft", {}, "parts", 0.25, 1, own=True),
     "fft-image-loose": Way("FFT, tolerance 1e-3", "fft", "fft", {"tolerance": 1e-3}, "parts", 0.25, 1),
     "multipole": Way("multipoles", "multipole", "multipole", {}, "order", 1, 3, own=True, spheres=True),
+    # As exactly as a conductivity to .003 % asks for: what is left then is a hundredth of that.
+    "multipole-loose": Way(
+        "multipoles, accuracy 1e-3", "multipole", "multipole", {"accuracy": 1e-3}, "order", 1, 3, own=True, spheres=True
+    ),
     # Through time, steps as fine as elements ask for, or as the methods have them by themselves.
     "dem-time": Way("DEM", "dem", "dem", {}, "particles", 250, 2000, marches=True),
     "dem-time-own": Way("DEM, its own steps", "dem", "dem", {}, "particles", 250, 2000, own=True, marches=True),

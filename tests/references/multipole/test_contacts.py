@@ -26,9 +26,10 @@ def carried_on(scene, accuracy=1e-5):
     """The mean flux where pairs are solved by all degrees though plain orders would do, and the error that is said."""
     arrangement = arrange(scene)
     plain = [homogeneous(arrangement.spheres, arrangement.gradient)]
-    history = truncation._in_contact(arrangement, plain, accuracy, 1e-10, 1, {})
+    wanted = {"accuracy": accuracy, "tolerance": 1e-10, "threads": 1, "kept": {}}
+    history = truncation._in_contact(arrangement, plain, truncation.by_changes, **wanted)
     assert history[-1].pairs > 0
-    return history[-1].mean_flux / arrangement.unit, truncation.remainder(history, 0.0)
+    return history[-1].mean_flux / arrangement.unit, truncation.by_gap(history, 0.0).left
 
 
 def in_order(gap, contrast):

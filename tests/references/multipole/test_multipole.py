@@ -87,6 +87,31 @@ def test_conductivity_rises_to_its_limit_and_the_stated_error_covers_what_is_lef
     assert values[-1] == pytest.approx(free.conductivity, rel=1e-14)
 
 
+def test_whoever_wants_to_be_sure_gets_an_interval_as_narrow_as_the_accuracy():
+    scene = gallery.random_dispersion(12, fraction=0.25, gap=0.01, seed=3, axis=2)
+    halves = {}
+    for sure in (False, True):
+        field = multipole.solve(scene, accuracy=1e-3, sure=sure)
+        halves[sure] = (field.error.upper - field.error.lower) / 2 / field.conductivity
+    # No more degrees than that takes: two of them leave 1/4 here.
+    assert 2.5e-4 < halves[True] <= 1e-3 < halves[False]
+
+
+def test_spheres_that_touch_are_solved_by_pairs_to_be_as_sure():
+    """In the limit of a chain of good conductors no plain order would do."""
+    scene = gallery.simple_cubic(1e3, fraction=math.pi / 6 * 0.9999)
+    field = multipole.solve(scene, accuracy=1e-3, sure=True)
+    assert field.stats["pairs"] > 0 and field.stats["remainder"] + field.stats["residual"] <= 1e-3
+
+
+def test_an_order_is_solved_as_exactly_as_asked():
+    exact, rough = (multipole.solve(box(), order=10, accuracy=accuracy) for accuracy in (None, 1e-3))
+    assert exact.stats["residual"] <= 1e-10 < rough.stats["residual"] <= 1e-6
+    assert rough.stats["iterations"] < exact.stats["iterations"]
+    # What is left of the sources counts for a hundredth of that in the conductivity.
+    assert rough.mean_flux[2] == pytest.approx(exact.mean_flux[2], rel=1e-6)
+
+
 def test_the_error_of_an_order_is_said_where_spheres_touch():
     touching = [((0.3, 0.5, 0.5), 0.2, 1e6), ((0.7, 0.5, 0.5), 0.2, 1e6)]
     scene = box((1.0, 0.0, 0.0), parts=touching)
