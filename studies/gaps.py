@@ -195,7 +195,8 @@ def plot(df):
         axes.axhline(RIGHT, color=GREY, linewidth=1)
         kind = "cubic order" if scene == "cubic" else "two unlike spheres"
         axes.set(xscale="log", yscale="log", xlabel="gap / radius", title=f"{kind}, contrast {contrast:g}")
-        axes.invert_xaxis()
+        if len(pick(rows, scene=scene, contrast=contrast)):
+            axes.invert_xaxis()
     panels[0].set_ylabel("|error of the conductivity|, %")
     figure.suptitle(f"Answers right to {RIGHT:g} %, or inside of their interval\n{_held(rows)}", fontsize=11)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)

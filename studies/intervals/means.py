@@ -13,6 +13,8 @@ CLEAR, NOTHING = 5.0, 1e-7
 def answers(df):
     """Rows with an interval and something to hold it against, `low` to `high`."""
     keys = ["scene", "seed"]
+    # Of few scenes no row may have another's interval.
+    df = df.reindex(columns=df.columns.union(("dual_lower", "dual_upper"), sort=False))
     right = df[df["method"] == "truth"].set_index(keys)
     found = df[(df["method"] != "truth") & df["lower"].notna()].copy()
     index = pd.MultiIndex.from_frame(found[keys])
