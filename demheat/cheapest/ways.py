@@ -234,6 +234,9 @@ def _law_of(method, scene, m):
 
         rule = automatic("cg", scene, ENOUGH)
         return "fft" if rule == "laminate" else f"fft-{rule}", m
+    if method == "fem" and m.asked:
+        # Surfaces of functions are met by a lattice, whose elements do not follow them as curved ones do.
+        return "fem-lattice", m
     if method == "multipole":
         from references.multipole.arrangement import arrange
 
