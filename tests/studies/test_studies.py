@@ -45,7 +45,9 @@ SHORT = ("table1_platonic",)
 
 # Coarse packings may not resolve every gap of a random dispersion; the claims judge what that costs.
 @pytest.mark.filterwarnings(
-    "ignore:.*do not fit into gaps:UserWarning", "ignore:gaps beside inclusions:UserWarning", "ignore:cracks .* are small"
+    "ignore:.*do not fit into gaps:UserWarning",
+    "ignore:gaps beside inclusions:UserWarning",
+    "ignore:cracks .* are small:UserWarning",
 )
 @pytest.mark.parametrize(
     "name", [name if name in SHORT else pytest.param(name, marks=pytest.mark.slow) for name in NAMES]
