@@ -14,7 +14,11 @@ MESHED_S = 55.0
 # Of a body that warms up.
 IN_TIME_S = 30.0
 # Of a scene that is there for the laws alone.
-SHORT, LONGER = 8.0, {"3000 spheres": 80.0, "primitive at 20": 40.0}
+SHORT, LONGER = (
+    8.0,
+    # Of surfaces that are searched for a few values tell too little.
+    {"3000 spheres": 80.0, "primitive at 20": 40.0, "ellipsoids at 50": 30.0, "joined at 0.1": 30.0},
+)
 # Ways that laws are fitted to.
 LAWS = ("dem", "fem", "fft-loose", "multipole-loose")
 # Of a quick run, beside the others.

@@ -69,8 +69,13 @@ def test_surfaces_that_cost_more_are_told_apart():
     assert (one.count, one.count_searched, one.asked) == (2, 1, 0.0)
     assert_allclose([one.surface - one.searched, one.searched], [0.16 * math.pi, 6 * egg.volume / 0.2], rtol=1e-12)
     other = measures(Scene(size, Material(1.0), [wavy], gradient=(1, 0, 0)))
-    # Half of the cell, which is as wide as the body.
-    assert other.asked == other.surface == pytest.approx(2.0, rel=1e-3) and other.searched == 0
+    # Schwarz's primitive surface has 2.3525 of a cell's square, which lines along three axes cross; it is as wide.
+    assert other.asked == other.surface == pytest.approx(2.3525, rel=0.1) and other.searched == 0
+    assert other.narrowest == 1.0
+    # Of a ball the directions of all normals count alike.
+    ball = LevelSet(lambda p: np.linalg.norm(p - 0.5, axis=1) - 0.3, ((0.15,) * 3, (0.85,) * 3), material)
+    round_one = measures(Scene(size, Material(1.0), [ball], walls={"x-": 0.0, "x+": 1.0}))
+    assert_allclose([round_one.asked, round_one.narrowest], [0.36 * math.pi, 0.6], rtol=0.02)
 
 
 def ways_of(shape):
