@@ -142,30 +142,21 @@ def predicted(method: str, scene: Scene | Measures, value: float) -> Predicted:
     return predicted_by(law, m, value)
 
 
-def needed(method: str, scene: Scene | Measures, accuracy: float, *, sure: bool = True) -> float | int:
-    """Coarsest value of a method's resolution with which the conductivity will be as accurate as asked."""
-    law = law_of(method)
-    finite("accuracy", accuracy, "a number between 0 and 1", lambda v: 0 < v < 1)
-    goal = math.log(accuracy) - (math.log(law.error_within) if sure else 0.0)
-    return _needed(law, _measured(scene), goal, law.error_powers)
-
-
 def needed_to_show(method: str, scene: Scene | Measures, accuracy: float) -> float | int:
-    """The same with which half of its interval will most likely be as narrow: to run twice costs more."""
+    """Coarsest value of a method's resolution with which half of its interval will most likely be as narrow.
+
+    To run twice costs more.
+    """
     law = law_of(method)
     finite("accuracy", accuracy, "a number between 0 and 1", lambda v: 0 < v < 1)
-    goal = math.log(accuracy) - LIKELY * math.log(law.half_within)
-    return _needed(law, _measured(scene), goal, law.half_powers)
-
-
-def _needed(law, m, goal, powers):
-    """Value at which the logarithm that powers are of is what is wanted."""
-    if not powers[1] > 0:
-        raise ValueError(f"method = {law.method!r}: its errors were not found to fall with the resolution")
+    if not law.half_refinement > 0:
+        raise ValueError(f"method = {method!r}: its intervals were not found to narrow with the resolution")
+    m = _measured(scene)
     terms = error_terms(law.knob, m, 1.0)
     terms[1] = 0.0
+    goal = math.log(accuracy) - LIKELY * math.log(law.half_within)
     # Logarithm of h/s, or of what stands for it.
-    return _value(law, m, (goal - terms @ powers) / powers[1])
+    return _value(law, m, (goal - terms @ law.half_powers) / law.half_refinement)
 
 
 def _value(law, m, refined):

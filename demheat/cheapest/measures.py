@@ -117,7 +117,8 @@ def _within(scene, shape, low, high):
 def _crossed(scene, shape):
     """Area of a shape's surface in the box, m2: twice the mean over directions of how often lines of a grid cross it.
 
-    That mean is over three axes here (Crofton's formula): a tenth off at most, but for planes across one of them.
+    That mean is over three axes here (Crofton's formula): right for a ball, a sixth too much or a third too little for
+    planes, where these lean to all axes alike or are across one.
     """
     low, high = (np.clip(end, 0.0, scene.size) for end in shape.bounds())
     inside, step = _within(scene, shape, low, high), (high - low) / POINTS

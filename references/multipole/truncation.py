@@ -65,8 +65,8 @@ def converged(arrangement: Arrangement, *, order, accuracy, tolerance, sure=Fals
             if order is not None or rest(history).left <= accuracy:
                 break
             if _hopeless(history, rest, accuracy, highest):
-                wanted = {"accuracy": accuracy, "tolerance": tolerance, "threads": threads}
-                return _in_contact(arrangement, history, rest, kept={} if kept is None else kept, **wanted)
+                knobs = {"accuracy": accuracy, "tolerance": tolerance, "threads": threads}
+                return _in_contact(arrangement, history, rest, kept={} if kept is None else kept, **knobs)
             orders = [history[-1].order + 2]
             wanted = max(wanted + 2, _needed(history, rest, accuracy))
     return history

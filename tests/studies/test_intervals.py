@@ -30,6 +30,12 @@ def test_an_interval_holds_what_it_has_in_common_with_what_is_true():
     assert means.held(each).all() and not means.strictly(each).any()
 
 
+def test_rows_without_a_dual_are_judged_as_well():
+    few = frame(off=[0.1, 0.1], half=[0.11, 0.09])
+    for each in (means.answers(few), means.answers(few.drop(columns=["dual_lower", "dual_upper"]))):
+        assert means.strictly(each).tolist() == [True, False]
+
+
 def test_errors_are_judged_where_they_are_known_well():
     each = means.answers(frame(off=[0.1, 0.001, 0.0], half=[0.3, 0.1, 0.1], doubt=0.01))
     assert_allclose(means.over(each), [3.0])

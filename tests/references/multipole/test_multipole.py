@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from demheat import Material, Scene, Sphere, gallery
 from references import fft, multipole
 from references.exact import lattice
+from references.multipole import truncation
 
 # Cubic arrays.
 
@@ -95,6 +96,12 @@ def test_whoever_wants_to_be_sure_gets_an_interval_as_narrow_as_the_accuracy():
         halves[sure] = (field.error.upper - field.error.lower) / 2 / field.conductivity
     # No more degrees than that takes: two of them leave 1/4 here.
     assert 2.5e-4 < halves[True] <= 1e-3 < halves[False]
+    # The linear system's residual is in the interval, too.
+    for accuracy in np.geomspace(1e-2, 1e-3, 6):
+        loose = multipole.solve(scene, accuracy=accuracy, sure=True, tolerance=0.9 * accuracy)
+        assert loose.error.upper / loose.conductivity - 1 <= accuracy
+    with pytest.raises(ValueError, match="tolerance = 0.001: must be < 0.001, the accuracy"):
+        multipole.solve(scene, accuracy=1e-3, sure=True, tolerance=1e-3)
 
 
 def test_spheres_that_touch_are_solved_by_pairs_to_be_as_sure():
@@ -104,10 +111,14 @@ def test_spheres_that_touch_are_solved_by_pairs_to_be_as_sure():
     assert field.stats["pairs"] > 0 and field.stats["remainder"] + field.stats["residual"] <= 1e-3
 
 
-def test_an_order_is_solved_as_exactly_as_asked():
+def test_an_order_is_solved_as_exactly_as_asked(monkeypatch):
+    asked, exchange = [], truncation.exchange
+    monkeypatch.setattr(truncation, "exchange", lambda *told: asked.append(told[-1]) or exchange(*told))
     exact, rough = (multipole.solve(box(), order=10, accuracy=accuracy) for accuracy in (None, 1e-3))
     assert exact.stats["residual"] <= 1e-10 < rough.stats["residual"] <= 1e-6
     assert rough.stats["iterations"] < exact.stats["iterations"]
+    # Where spheres exchange by cells, a tenth of the accuracy.
+    assert asked == [1e-10, pytest.approx(1e-4)]
     # What is left of the sources counts for a hundredth of that in the conductivity.
     assert rough.mean_flux[2] == pytest.approx(exact.mean_flux[2], rel=1e-6)
 

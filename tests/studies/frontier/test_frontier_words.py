@@ -147,6 +147,9 @@ def test_who_wins_on_a_second_machine():
     assert [second.alone(pairs, number, "fft", 0.1) for number in (0, 1)] == [0, 1]
     # A scene of which a way is missing there is left out.
     assert second.whole(second.searches(ROWS), SLOWER.iloc[1:]) == {"half", "unions", "gyroid"}
+    # Of multipoles, which know no other shapes than spheres, nothing is asked.
+    others = SLOWER[SLOWER["way"] != "multipole"]
+    assert second.whole(second.searches(ROWS), others) == {"third", "half", "unions", "gyroid"}
 
 
 def test_ways_that_were_one_methods_alone(monkeypatch):
