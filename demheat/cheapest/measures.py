@@ -120,7 +120,10 @@ def _crossed(scene, shape):
     That mean is over three axes here (Crofton's formula): right for a ball, a sixth too much or a third too little for
     planes, where these lean to all axes alike or are across one.
     """
-    low, high = (np.clip(end, 0.0, scene.size) for end in shape.bounds())
+    low, high = shape.bounds()
+    if not (scene.periodic and shape.bounded):
+        # What crosses a face of a periodic cell goes on at the other one.
+        low, high = (np.clip(end, 0.0, scene.size) for end in (low, high))
     inside, step = _within(scene, shape, low, high), (high - low) / POINTS
     crossings = [np.count_nonzero(np.diff(inside, axis=axis)) for axis in range(3)]
     return 2 / 3 * float(sum(count * step.prod() / step[axis] for axis, count in enumerate(crossings)))

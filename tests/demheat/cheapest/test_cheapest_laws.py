@@ -81,6 +81,10 @@ def test_surfaces_that_cost_more_are_told_apart():
     ball = LevelSet(lambda p: np.linalg.norm(p - 0.5, axis=1) - 0.3, ((0.15,) * 3, (0.85,) * 3), material)
     round_one = measures(Scene(size, Material(1.0), [ball], walls={"x-": 0.0, "x+": 1.0}))
     assert_allclose([round_one.asked, round_one.narrowest], [0.36 * math.pi, 0.6], rtol=0.02)
+    # Wherever it lies in a periodic cell, also in eight pieces, or beyond.
+    for middle in (0.0, 1.6):
+        moved = measures(Scene(size, Material(1.0), [ball.placed((middle,) * 3)], gradient=(1, 0, 0)))
+        assert_allclose([moved.asked, moved.narrowest], [round_one.asked, round_one.narrowest], rtol=1e-9)
 
 
 def ways_of(shape):
