@@ -62,6 +62,7 @@ class Contacts:
     def __init__(self, spheres, order, precision):
         self.pairs, self.order, self.few = near_pairs(spheres), order, min(order, FEW)
         self.table = exchange(spheres, self.few, precision)
+        self.precision = self.table.precision
         x, y, z = self.pairs.way.T
         self.angles = np.stack([np.arctan2(np.hypot(x, y), z), np.arctan2(y, x)], axis=1)
         kinds, self.kind = _kinds(spheres, self.pairs)

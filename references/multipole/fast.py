@@ -69,7 +69,7 @@ def far_degree(edge, precision) -> int:
     With r half the diagonal of a cell and D the least distance of the middles of cells that are not near, what a
     source makes at any point is known up to (r/(D - r))^(degree + 1) or so of itself: sources and points in the corners
     that face each other. Most are elsewhere: at random, in cubes, errors of b of equal spheres were found to be
-    0.43^degree/60 of the largest b, those of the conductivity a hundred times less.
+    0.43^degree/60 of the largest b, those of the conductivity 30 times less or more.
     """
     half = float(np.linalg.norm(edge)) / 2
     ratio = half / ((WIDTH + 1) * float(np.min(edge)) - half)
@@ -83,6 +83,7 @@ class FastMultipole:
     """What spheres make at each other, by cells."""
 
     def __init__(self, spheres, plan: Plan):
+        self.precision = plan.precision
         self.cells, self.order = sorted_into(plan.shape, spheres, plan.precision)
         self.degree = degree = plan.degree
         shape = self.cells.shape

@@ -25,8 +25,11 @@ from references.multipole.arrangement import arrange, smallest_gap
 from references.multipole.at_rest import at_rest
 from references.multipole.field import Evaluator
 from references.multipole.third_order import check_order
-from references.multipole.truncation import ACCURACY, by_changes, by_gap, converged, field_truncation
+from references.multipole.truncation import ACCURACY, by_changes, by_gap, converged, field_truncation, inexactness
 from references.threads import MOST_THREADS
+
+# Of the accuracy that is to be sure: the rest is for higher degrees and for exchange by cells.
+MOST_TOLERANCE = 0.9
 
 
 def solve(
@@ -70,11 +73,11 @@ def solve(
     Field
         The temperature of a periodic cell is the mean gradient times the position plus a periodic part of zero mean. Of
         its `stats`, `truncation` is the relative error of the mean flux that higher degrees would remove, extrapolated
-        from the last changes; `remainder` the same as gaps ask for, by which the interval goes; `field_truncation` the
-        largest term of the last two degrees in the flux at an interface, over the mean gradient; `smallest_gap` in
-        metres, mirror images included; `pairs` how many near ones are solved by all degrees, 0 where that need not be;
-        `convergence` pairs (order, conductivity). In gaps of such pairs the flux at points lacks what is beyond the
-        order.
+        from the last changes; `remainder` the same as gaps ask for and `inexactness` that of degrees kept, by which the
+        interval goes; `field_truncation` the largest term of the last two degrees in the flux at an interface, over the
+        mean gradient; `smallest_gap` in metres, mirror images included; `pairs` how many near ones are solved by all
+        degrees, 0 where that need not be; `convergence` pairs (order, conductivity). In gaps of such pairs the flux at
+        points lacks what is beyond the order.
 
     Raises
     ------
@@ -172,11 +175,11 @@ def _field(scene, arrangement, history, points_per_axis):
 
 
 def _degrees(field):
-    """What higher degrees would remove, and what the linear system's residual may hide."""
+    """What higher degrees would remove, and what may hide in how exactly those kept are solved."""
     stats, widest = field.stats, max((each.radius for each in field.scene.inclusions), default=0.0)
     slope = field.scene.gradient if field.scene.periodic else np.ptp(list(field.wall_temperature.values()))
     slope = np.linalg.norm(slope) / (1.0 if field.scene.periodic else field.scene.size[field.scene.axis])
-    relative = stats["remainder"] + stats["residual"]
+    relative = stats["remainder"] + stats["inexactness"]
     return known(field, relative, "higher degrees", temperature=float(stats["field_truncation"] * slope * widest))
 
 
@@ -194,6 +197,7 @@ def _stats(scene, arrangement, history):
         "unknowns": spheres.count * ((last.order + 1) ** 2 - 1),
         "iterations": last.iterations,
         "residual": last.residual,
+        "inexactness": inexactness(last),
         "truncation": by_changes(history).left,
         "remainder": by_gap(history, smallest_gap(spheres)).left,
         "field_truncation": field_truncation(spheres, last, gradient),
@@ -211,8 +215,9 @@ def _check_knobs(order, accuracy, tolerance, sure, points_per_axis, threads):
             finite(name, value, "a number from 1e-14 to below 1", lambda v: 1e-14 <= v < 1)
     flag("sure", sure)
     wanted = ACCURACY if accuracy is None else accuracy
-    if sure and tolerance is not None and tolerance >= wanted:
-        raise ValueError(f"tolerance = {tolerance:g}: must be < {wanted:g}, the accuracy, to be sure of that")
+    if sure and tolerance is not None and tolerance > MOST_TOLERANCE * wanted:
+        most = MOST_TOLERANCE * wanted
+        raise ValueError(f"tolerance = {tolerance:g}: must be <= {most:g} to be sure of the accuracy, {wanted:g}")
     check_points_per_axis(points_per_axis)
     valid = f"an integer >= 1; at most {MOST_THREADS}"
     whole("threads", threads, valid, lambda v: 1 <= v <= MOST_THREADS)

@@ -31,6 +31,7 @@ class Solved(NamedTuple):
     mean_flux: np.ndarray  # (3,) float array, K/length: Over the conductivity of the matrix
     iterations: int
     residual: float  # Relative, recomputed
+    precision: float = 0.0  # Relative, of what spheres make at each other
     pairs: int = 0  # Of spheres so near that they are solved by all degrees
 
 
@@ -104,7 +105,7 @@ def solve_order(
         raise RuntimeError(f"multipole: residual {residual:.2e} > {tolerance:.2e} after {iterations} iterations")
     moments = dipoles(spheres, everywhere(source)).sum(axis=0)
     mean = np.asarray(gradient) - 4 * math.pi / np.prod(spheres.size) * moments
-    return Solved(order, everywhere(source), everywhere(local), -mean, iterations, residual)
+    return Solved(order, everywhere(source), everywhere(local), -mean, iterations, residual, table.precision)
 
 
 def gmres(system, load, start, tolerance, heard=None):

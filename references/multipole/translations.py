@@ -52,6 +52,8 @@ class Translation(NamedTuple):
     # running fastest
     sums: np.ndarray
     top: np.ndarray  # (1 + pairs,) int array: Highest degree L = l + l' that counts
+    # Relative error of what spheres make at each other: rounding.
+    precision = 0.0
 
     def exchanged(self, spheres, source, threads=1):
         """c that spheres make at those that count, but for the background: see `received`."""

@@ -1,6 +1,7 @@
 """Multipoles beside cubic arrays and voxels; the truncation they tell is no less than what is left."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from demheat import Material, Scene, Sphere, gallery
 from references import fft, multipole
 from references.exact import lattice
 from references.multipole import truncation
+from references.multipole.fast import FastMultipole, plan
 
 # Cubic arrays.
 
@@ -100,15 +102,29 @@ def test_whoever_wants_to_be_sure_gets_an_interval_as_narrow_as_the_accuracy():
     for accuracy in np.geomspace(1e-2, 1e-3, 6):
         loose = multipole.solve(scene, accuracy=accuracy, sure=True, tolerance=0.9 * accuracy)
         assert loose.error.upper / loose.conductivity - 1 <= accuracy
-    with pytest.raises(ValueError, match="tolerance = 0.001: must be < 0.001, the accuracy"):
-        multipole.solve(scene, accuracy=1e-3, sure=True, tolerance=1e-3)
+    with pytest.raises(ValueError, match="tolerance = 0.00095: must be <= 0.0009 to be sure of the accuracy, 0.001"):
+        multipole.solve(scene, accuracy=1e-3, sure=True, tolerance=9.5e-4)
 
 
 def test_spheres_that_touch_are_solved_by_pairs_to_be_as_sure():
     """In the limit of a chain of good conductors no plain order would do."""
     scene = gallery.simple_cubic(1e3, fraction=math.pi / 6 * 0.9999)
     field = multipole.solve(scene, accuracy=1e-3, sure=True)
-    assert field.stats["pairs"] > 0 and field.stats["remainder"] + field.stats["residual"] <= 1e-3
+    assert field.stats["pairs"] > 0 and field.stats["remainder"] + field.stats["inexactness"] <= 1e-3
+
+
+def test_an_interval_knows_how_exactly_cells_exchange(monkeypatch):
+    """Few degrees suffice of surfaces that resist, and solved to a hundredth they are off by that."""
+    plain = gallery.random_dispersion(12, fraction=0.2, seed=3, axis=2)
+    film = 0.5 * plain.inclusions[0].radius / plain.matrix.conductivity
+    scene = replace(plain, inclusions=[replace(sphere, resistance=film) for sphere in plain.inclusions])
+    monkeypatch.setattr(truncation, "exchange", lambda *told: FastMultipole(told[0], plan(*told)))
+    exact = multipole.solve(scene, order=12)
+    rough = multipole.solve(scene, accuracy=1e-2, sure=True, tolerance=1e-6)
+    assert rough.stats["remainder"] + rough.stats["residual"] < abs(rough.conductivity / exact.conductivity - 1)
+    assert rough.error.lower < exact.conductivity < rough.error.upper
+    # The error of what cells make at each other counts for a tenth.
+    assert rough.stats["inexactness"] == pytest.approx(1e-4, rel=0.1)
 
 
 def test_an_order_is_solved_as_exactly_as_asked(monkeypatch):
