@@ -110,7 +110,7 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
         return path
     check_writable(path.parent)
     compute = compute or quiet.quietly(spawn_row, say=say)
-    todo.sort(key=lambda case: values_only(study, case))
+    todo.sort(key=lambda case: not values_only(study, case))
     arriving = spread(name, study, todo) if spread else enumerate(_made(name, study, todo, compute))
     start = time.perf_counter()
 
@@ -127,12 +127,12 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
 
 
 def _made(name, study, todo, compute):
-    """Rows in order, those that count for their values alone side by side at the end."""
+    """Rows for their values alone first, side by side, which compile what the others load; then those, in order."""
     beside = getattr(compute, "beside", None)
-    alone = [case for case in todo if beside and values_only(study, case)]
-    yield from (compute(name, study, case) for case in todo[: len(todo) - len(alone)])
-    if alone:
-        yield from beside([(name, study, case) for case in alone])
+    together = [case for case in todo if beside and values_only(study, case)]
+    if together:
+        yield from beside([(name, study, case) for case in together])
+    yield from (compute(name, study, case) for case in todo[len(together) :])
 
 
 def guests_of(name, method, *, quick=False):

@@ -58,7 +58,7 @@ def test_in_words(seconds, words):
     assert lasting.time_in_words(seconds) == words
 
 
-def test_rows_for_their_values_are_made_beside_the_others_without_costs(tiny, monkeypatch):
+def test_rows_for_their_values_are_made_first_side_by_side_and_without_costs(tiny, monkeypatch):
     for variable in ("NUMBA_THREADING_LAYER", "OMP_WAIT_POLICY"):
         monkeypatch.setenv(variable, "")
     tiny.write('{"name": "slow", "x": 3.0}', **VALUES)
@@ -74,7 +74,7 @@ def test_rows_for_their_values_are_made_beside_the_others_without_costs(tiny, mo
             yield runner.compute_row(*task[1:])
 
     compute.beside = beside
-    assert tiny.ran(compute=compute) == ["plain", "second", "slow"] and together == ["second", "slow"]
+    assert tiny.ran(compute=compute) == ["second", "slow", "plain"] and together == ["second", "slow"]
     rows = {row["name"]: row for row in tiny.rows().values()}
     assert float(rows["plain"]["cpu_s"]) >= 0 and rows["second"]["square"] == "4.0"
     for column in (*store.COST, "beside", "noise"):
