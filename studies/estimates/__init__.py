@@ -36,11 +36,6 @@ REASONS = {
 }
 # Why claims on the stored rows fail.
 FAILS = {
-    "unseen scenes right to 0.1 %": (
-        "spheres halved by walls: of 4345 particles the interval is half of the error, which is .07 %; one in twenty "
-        "may miss, and eight scenes have one"
-    ),
-    "an entry outside of its interval": "the same scene, one of eight",
     "FEM: half of the interval over the error": (
         "no value lies from 4.3 to 5.9, and the middle of 35 is the first above: where runs tell little, intervals are "
         "as wide as linear elements say; before, the middle was 4.2, and on drawn scenes nine in a hundred missed"

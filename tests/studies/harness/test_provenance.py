@@ -64,11 +64,14 @@ def test_a_commit_that_changes_no_code_is_the_same_code(repository):
         ("# A word.\nA = 1  # another\n", True, True),
         ('"""Text."""\n\nA = 1\n', True, False),
         ('A = "1"\n', False, True),
+        ('A = 1\nFAILS = {"error": "its order"}\nREASONS = {}\n', True, True),
+        ("FAILS = A = 1\n", False, True),
+        ("FAILS, A = 1, 1\n", False, True),
         ('A = 1\n"""Text."""\n', False, False),
         ("A =\n", False, False),
     ],
 )
-def test_comments_and_docstrings_do_no_work(repository, text, same, committed):
+def test_comments_docstrings_and_sentences_about_claims_do_no_work(repository, text, same, committed):
     root, git = repository
     first = provenance.commit()
     (root / "demheat" / "dem.py").write_text(text)
@@ -91,6 +94,21 @@ def test_docstrings_of_classes_and_functions_do_no_work(repository):
     assert provenance.of_this_code(first)
     path.write_text('class A:\n    """C."""\n\n    def b(self):\n        return 2\n')
     git("status")
+    assert not provenance.of_this_code(first)
+
+
+def test_what_only_says_of_which_code_a_row_is_does_no_work(repository):
+    root, git = repository
+    (path := root / provenance.ASIDE[0]).parent.mkdir(parents=True)
+    path.write_text("A = 1\n")
+    git("add", ".")
+    git("commit", "-qm", "another")
+    first = provenance.commit()
+    path.write_text("A = 2\n")
+    git("commit", "-qam", "changed")
+    assert provenance.of_this_code(first)
+    (root / "demheat" / "dem.py").write_text("A = 2\n")
+    git("commit", "-qam", "both")
     assert not provenance.of_this_code(first)
 
 
