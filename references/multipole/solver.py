@@ -24,8 +24,9 @@ from references.midpoints import check_points_per_axis, midpoints
 from references.multipole.arrangement import arrange, smallest_gap
 from references.multipole.at_rest import at_rest
 from references.multipole.field import Evaluator
+from references.multipole.nearest_images import beside
 from references.multipole.third_order import check_order
-from references.multipole.truncation import ACCURACY, by_changes, by_gap, converged, field_truncation, inexactness
+from references.multipole.truncation import ACCURACY, by_changes, by_images, converged, field_truncation, inexactness
 from references.threads import MOST_THREADS
 
 # Of the accuracy that is to be sure: the rest is for higher degrees and for exchange by cells.
@@ -199,7 +200,7 @@ def _stats(scene, arrangement, history):
         "residual": last.residual,
         "inexactness": inexactness(last),
         "truncation": by_changes(history).left,
-        "remainder": by_gap(history, smallest_gap(spheres)).left,
+        "remainder": by_images(history, beside(spheres)).left,
         "field_truncation": field_truncation(spheres, last, gradient),
         "smallest_gap": smallest_gap(spheres) * unit,
         "pairs": last.pairs,
@@ -214,6 +215,8 @@ def _check_knobs(order, accuracy, tolerance, sure, points_per_axis, threads):
         if value is not None:
             finite(name, value, "a number from 1e-14 to below 1", lambda v: 1e-14 <= v < 1)
     flag("sure", sure)
+    if sure and order is not None:
+        raise ValueError(f"order = {order}: must not be given to be sure of an accuracy, which raises it")
     wanted = ACCURACY if accuracy is None else accuracy
     if sure and tolerance is not None and tolerance > MOST_TOLERANCE * wanted:
         most = MOST_TOLERANCE * wanted

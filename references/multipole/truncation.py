@@ -12,6 +12,7 @@ from references.multipole import contacts
 from references.multipole.arrangement import Arrangement, smallest_gap
 from references.multipole.exchange import exchange
 from references.multipole.fast import FastMultipole, plan
+from references.multipole.nearest_images import beside
 from references.multipole.sums import entries
 from references.multipole.system import homogeneous, solve_order
 
@@ -36,13 +37,15 @@ RATIOS = (0.2, 0.95)
 SURE = 1.5
 # The least ratio where pairs are solved by all degrees, of eight degrees each: in cubic order .07 to .2 were found.
 STEADY = 0.3
+# A sphere is small beside a larger one where its share of that one's radius is less than this over the degree.
+SMALL = 2.0
 
 
 def converged(arrangement: Arrangement, *, order, accuracy, tolerance, sure=False, threads=1, kept=None):
     """Solutions of rising order, two degrees apart; the last is the answer. `sure` if half of its interval is asked."""
     spheres = arrangement.spheres
     highest = highest_order(spheres)
-    rest = partial(_shown, gap=smallest_gap(spheres)) if sure else by_changes
+    rest = partial(_shown, near=beside(spheres)) if sure else by_changes
     if order is not None and order > highest:
         raise ValueError(f"order = {order}: must be <= {highest} for {len(spheres.radii)} spheres in memory and time")
     exact, accuracy = order is not None and accuracy is None, ACCURACY if accuracy is None else accuracy
@@ -149,27 +152,42 @@ def by_changes(history) -> Rest:
     return Rest(2 * max(changes[-1], before) * ratio / (1 - ratio), ratio)
 
 
-def by_gap(history, gap) -> Rest:
-    """What is expected to be left; `gap` is the smallest between surfaces, over the largest diameter.
+def by_images(history, near) -> Rest:
+    """What is expected to be left, by `nearest_images` of the pairs that are `near`.
 
-    Images of spheres in each other end in two points, whose terms fall by exp(-2 alpha) from degree to degree, where
-    cosh(alpha) is the distance of the spheres' middles over their diameter: changes come to fall by no more than that,
-    from any of the last ones, as some degrees hardly matter in a symmetric array. Of pairs that are solved by all
-    degrees the gap says nothing.
+    Terms fall by no more than exp(-2 alpha) from degree to degree, from any of the last changes, as some degrees hardly
+    matter in a symmetric array. A sphere that is small beside the waves of a degree on a larger one answers their
+    slope, and so by the degree's square.
     """
     changes = _changes(history)
     if not changes:
         return Rest(0.0, RATIOS[0])
-    least = STEADY if history[-1].pairs else math.exp(-4 * math.acosh(1 + max(gap, 0.0)))
+    order, by_pairs = history[-1].order, history[-1].pairs > 0
+    least = _steady(near) if by_pairs else math.exp(-4 * near.slowest())
     ratio = min(max(_mean_ratio(changes), least), RATIOS[1])
+    sum_of_rest = ratio / (1 - ratio)
+    if not by_pairs:
+        small = min(math.exp(-4 * near.slowest(below=SMALL / order)), RATIOS[1])
+        sum_of_rest, ratio = max(sum_of_rest, _rising(small, order)), max(ratio, small)
     # That from the matrix alone tells nothing, unless there is no other.
     told = changes[::-1][: max(len(history) - 2, 1)]
-    return Rest(SURE * max(change * ratio**back for back, change in enumerate(told, 1)) / (1 - ratio), ratio)
+    return Rest(SURE * max(change * ratio**back for back, change in enumerate(told)) * sum_of_rest, ratio)
 
 
-def _shown(history, gap):
+def _steady(near):
+    """The least ratio of pairs by all degrees: sources on a sphere, as known as its pairs know what comes to them."""
+    return max(STEADY, float(np.max(near.reach, initial=0.0)) ** (8 * contacts.PART))
+
+
+def _rising(ratio, order):
+    """Sum of ((order + 2 j)/order)^2 ratio^j over all j from 1 on."""
+    q, rest = ratio, 1 - ratio
+    return q / rest + 4 / order * q / rest**2 + 4 / order**2 * q * (1 + q) / rest**3
+
+
+def _shown(history, near):
     """The same with how exactly the last was solved, as intervals have it."""
-    rest = by_gap(history, gap)
+    rest = by_images(history, near)
     return rest._replace(left=rest.left + inexactness(history[-1]))
 
 

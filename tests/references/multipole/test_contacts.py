@@ -13,8 +13,9 @@ from references import multipole
 from references.exact import lattice
 from references.multipole import contacts, truncation
 from references.multipole.arrangement import arrange
+from references.multipole.nearest_images import beside
 from references.multipole.sums import entries, harmonics
-from references.multipole.system import homogeneous
+from references.multipole.system import homogeneous, solve_order
 from references.multipole.turns import turned
 from references.multipole.two_spheres import Two, direct, exchanged, polarisability
 
@@ -29,13 +30,33 @@ def carried_on(scene, accuracy=1e-5):
     wanted = {"accuracy": accuracy, "tolerance": 1e-10, "threads": 1, "kept": {}}
     history = truncation._in_contact(arrangement, plain, truncation.by_changes, **wanted)
     assert history[-1].pairs > 0
-    return history[-1].mean_flux / arrangement.unit, truncation.by_gap(history, 0.0).left
+    return history[-1].mean_flux / arrangement.unit, truncation.by_images(history, beside(arrangement.spheres)).left
 
 
 def in_order(gap, contrast):
     """Spheres in cubic order, the gap over their radius."""
     radius = 1 / (2 + gap)
     return Scene((1,) * 3, Material(1.0), [Sphere((0.5,) * 3, radius, Material(contrast))], gradient=(0, 0, 1))
+
+
+def test_pairs_of_unlike_radii_are_known_more_slowly():
+    """What comes to a small sphere beside a large one is known by degrees about that one's centre, not far from it."""
+    large, small, gap = 0.35, 0.043, 0.0055
+    ways = 0.5 + (large + small + gap) / math.sqrt(3) * (np.indices((2, 2, 2)).reshape(3, -1).T * 2 - 1)
+    spheres = [Sphere((0.5,) * 3, large, Material(math.inf)), *(Sphere(way, small, Material(1e4)) for way in ways)]
+    scene = Scene((1,) * 3, Material(1.0), spheres, gradient=(0, 0, 1))
+    arrangement = arrange(scene)
+    history, flux = [homogeneous(arrangement.spheres, arrangement.gradient)], {}
+    for order in (16, 24, 32, 64):
+        table = contacts.Contacts(arrangement.spheres, order, 1e-8)
+        options = {"tolerance": 1e-8, "received": table.received}
+        found = solve_order(arrangement.spheres, table, arrangement.gradient, order, **options)
+        history.append(found._replace(pairs=len(table.pairs.here)))
+        flux[order] = found.mean_flux[2]
+    near = beside(arrangement.spheres)
+    for last, order in ((3, 24), (4, 32)):
+        off = abs(flux[order] / flux[64] - 1)
+        assert off < truncation.by_images(history[:last], near).left < 4 * off
 
 
 def test_turns_bring_a_direction_to_z_and_back():

@@ -106,6 +106,25 @@ def test_whoever_wants_to_be_sure_gets_an_interval_as_narrow_as_the_accuracy():
         multipole.solve(scene, accuracy=1e-3, sure=True, tolerance=9.5e-4)
 
 
+@pytest.mark.parametrize("core", [0.0, math.inf])
+def test_intervals_beside_small_satellites_hold(core):
+    """Terms of a large sphere fall more slowly beside small ones than beside its like, after rising at first.
+
+    Their centres stand at a tenth of a small radius from its surface: the law of equal spheres missed by 2.6 halves.
+    """
+    large, small, gap = 0.3, 0.03, 0.01
+    far = (large + small + gap) / math.sqrt(3)
+    ways = 0.5 + far * (np.indices((2, 2, 2)).reshape(3, -1).T * 2 - 1)
+    spheres = [Sphere((0.5,) * 3, large, Material(core)), *(Sphere(way, small, Material(1e4)) for way in ways)]
+    scene = Scene((1,) * 3, Material(1.0), spheres, gradient=(0, 0, 1))
+    # Of 28 degrees the next twelve change 2e-5: a fiftieth of the narrowest half.
+    found = multipole.solve(scene, order=28, accuracy=1e-6).conductivity
+    for accuracy in (1e-2, 1e-3):
+        field = multipole.solve(scene, accuracy=accuracy, sure=True)
+        assert field.error.lower < found < field.error.upper
+        assert field.error.upper - field.error.lower <= 2 * accuracy * found
+
+
 def test_spheres_that_touch_are_solved_by_pairs_to_be_as_sure():
     """In the limit of a chain of good conductors no plain order would do."""
     scene = gallery.simple_cubic(1e3, fraction=math.pi / 6 * 0.9999)
