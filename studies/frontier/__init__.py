@@ -10,8 +10,8 @@ points. Targets are 3 to .003 % of the conductivity. Fluxes and temperatures at 
 were found on them, and twelve that nothing was ever tuned on; three bodies that warm up, whose temperatures count; six
 more are there for the laws of error and cost alone, which `python -m studies.frontier.laws` fits to all but those
 twelve. What is true is known in closed form, by multipoles, or by two methods that close in on the same; a target is
-judged where that is known three times better. A search ends where its seconds do (a column of the row), or where the
-next target would take over two minutes or 8 GiB.
+judged where that is known three times better. A search tries no finer value once half of its seconds (a column of the
+row) are spent, or where the next target would take over two minutes or 8 GiB; the rest is for halving and repeats.
 
 Costs are those of a quiet machine, or none are stored: `python -m studies run frontier --out results --force`.
 """

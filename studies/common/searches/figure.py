@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from studies.common.searches import means
-from studies.common.searches.scenes import TITLES, TUNED
+from studies.common.searches.scenes import HELD_BACK, TITLES, TUNED
 from studies.common.searches.search import TARGETS
 from studies.harness.figures import GREY, look
 
@@ -13,6 +13,8 @@ COLUMNS = 6
 FAMILIES = {"dem": "DEM", "fem": "FEM", "fft": "FFT", "multipole": "multipoles (spheres only)"}
 # Broad line of the frontier, thin ones of methods.
 BROAD, THIN = 7.0, 1.4
+# Where the truth is not known well enough to judge.
+UNKNOWN = {"facecolor": "none", "edgecolor": "0.8", "hatch": "///", "linewidth": 0, "zorder": 0}
 
 
 def plot(df, quantity="conductivity", *, xlim=(5.0, 0.002), ticks=(1.0, 0.1, 0.01)):
@@ -26,8 +28,9 @@ def plot(df, quantity="conductivity", *, xlim=(5.0, 0.002), ticks=(1.0, 0.1, 0.0
     figure, grid = pyplot.subplots(
         rows, columns, figsize=(2.9 * columns, 1.2 + 2.5 * rows), squeeze=False, sharex=True, sharey=True
     )
+    known = {target: means.judged(df, quantity, target) for target in TARGETS}
     for axes, scene in zip(grid.flat, scenes, strict=False):
-        _panel(axes, df, scene, quantity)
+        _panel(axes, df, scene, quantity, known)
     for axes in grid.flat[len(scenes) :]:
         axes.set_visible(False)
     grid[0, 0].set(xscale="log", yscale="log", xlim=xlim, ylim=(3e-3, 200.0))
@@ -48,7 +51,7 @@ def plot(df, quantity="conductivity", *, xlim=(5.0, 0.002), ticks=(1.0, 0.1, 0.0
     return figure
 
 
-def _panel(axes, df, scene, quantity):
+def _panel(axes, df, scene, quantity, known):
     every = {target: means.reached(df, scene, quantity, target, any_shape=False) for target in TARGETS}
     for name, label in FAMILIES.items():
         cheapest = {
@@ -58,6 +61,8 @@ def _panel(axes, df, scene, quantity):
         axes.plot(list(cheapest), list(cheapest.values()), **style)
     for target in TARGETS:
         best = means.best(df, scene, quantity, target)
+        if scene not in known[target]:
+            axes.axvspan(*_about(target), **UNKNOWN, label="truth not known")
         if best is None:
             continue
         tie = len(best.tied) > 1
@@ -66,18 +71,24 @@ def _panel(axes, df, scene, quantity):
             [target / 1.6, target * 1.6], [best.first.cpu_s] * 2, color=colour, linewidth=BROAD, alpha=0.45, zorder=2
         )
         if tie:
-            axes.axvspan(target / 1.7, target * 1.7, color=GREY, alpha=0.18, linewidth=0, label="tie", zorder=0)
-    axes.set_title(f"{TITLES[scene]}{' *' if scene in TUNED else ''}", fontsize=9)
+            axes.axvspan(*_about(target), color=GREY, alpha=0.18, linewidth=0, label="tie", zorder=0)
+    mark = " *" if scene in TUNED else " (held back)" if scene in HELD_BACK else ""
+    axes.set_title(f"{TITLES[scene]}{mark}", fontsize=9)
+
+
+def _about(target):
+    return target / 1.7, target * 1.7
 
 
 def _headline(df, quantity, targets):
-    scenes = means.scenes_of(df)
     parts = []
     for target in targets:
-        found = means.wins(df, quantity, target, scenes)
-        said = [f"{FAMILIES[name].split()[0]} {len(found[name])}" for name in ("dem", "fem", "fft") if name in found]
-        parts.append(f"{target:g} %: {', '.join(said) or 'nobody'}")
+        every = {scene: means.best(df, scene, quantity, target) for scene in means.judged(df, quantity, target)}
+        won = [best.first.family for best in every.values() if best is not None and len(best.tied) == 1]
+        said = [f"{FAMILIES[name]} {won.count(name)}" for name in ("dem", "fem", "fft")]
+        parts.append(f"{target:g} %: {', '.join(said)} of {len(every)}")
     return (
-        f"Cheapest method for any shape, of {len(scenes)} scenes (ties count for both)  -  {'  -  '.join(parts)}\n"
-        "*: constants of the DEM were found on this body, or on it at other contrasts"
+        f"Cheapest method for any shape without a tie, of scenes  -  {'  -  '.join(parts)}\n"
+        "Lower is cheaper, farther right more exact.  *: constants of the DEM were found on this body, or on it at "
+        "other contrasts"
     )
