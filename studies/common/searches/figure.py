@@ -44,7 +44,7 @@ def plot(df, quantity="conductivity", *, xlim=(5.0, 0.002), ticks=(1.0, 0.1, 0.0
     found = {}
     for axes in grid.flat:
         found |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
-    figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=5)
+    figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=6)
     figure.suptitle(
         _headline(df, quantity, ticks) if means.searched(df) else "No search has been run on a quiet machine yet"
     )
@@ -86,9 +86,9 @@ def _headline(df, quantity, targets):
         every = {scene: means.best(df, scene, quantity, target) for scene in means.judged(df, quantity, target)}
         won = [best.first.family for best in every.values() if best is not None and len(best.tied) == 1]
         said = [f"{FAMILIES[name]} {won.count(name)}" for name in ("dem", "fem", "fft")]
-        parts.append(f"{target:g} %: {', '.join(said)} of {len(every)}")
+        parts.append(f"{target:g} % on {len(every)} scenes: {', '.join(said)}")
     return (
-        f"Cheapest method for any shape without a tie, of scenes  -  {'  -  '.join(parts)}\n"
+        f"Cheapest method for any shape, without a tie  -  {'  -  '.join(parts)}\n"
         "Lower is cheaper, farther right more exact.  *: constants of the DEM were found on this body, or on it at "
         "other contrasts"
     )
