@@ -104,6 +104,8 @@ def test_whoever_wants_to_be_sure_gets_an_interval_as_narrow_as_the_accuracy():
         assert loose.error.upper / loose.conductivity - 1 <= accuracy
     with pytest.raises(ValueError, match="tolerance = 0.00095: must be <= 0.0009 to be sure of the accuracy, 0.001"):
         multipole.solve(scene, accuracy=1e-3, sure=True, tolerance=9.5e-4)
+    with pytest.raises(ValueError, match="order = 4: must not be given to be sure of an accuracy"):
+        multipole.solve(scene, order=4, accuracy=1e-3, sure=True)
 
 
 @pytest.mark.parametrize("core", [0.0, math.inf])
