@@ -139,7 +139,7 @@ def _multipole(loads, accuracy, memory):
         found = [_law_of("multipole", whole, loads.of_body) for whole in loads.wholes.values()]
     except NotImplementedError as error:
         return Way("multipole", {}, refused=one_line(error))
-    knobs = {"accuracy": accuracy, "sure": True}
+    knobs = {"accuracy": accuracy}
     if not loads.body.inclusions:
         return Way("multipole", knobs, accuracy)
     law, m = found[0]

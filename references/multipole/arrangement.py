@@ -77,6 +77,30 @@ def _gaps(spheres, one, two):
     return np.linalg.norm(apart, axis=1) - spheres.radii[one] - spheres.radii[two]
 
 
+class Pairs(NamedTuple):
+    """Each sphere that counts, beside others or their images that are near."""
+
+    here: np.ndarray  # (k,) int array: The sphere
+    there: np.ndarray  # (k,) int array: The other
+    way: np.ndarray  # (k, 3) float array, length: From the one's centre to the image of the other's
+
+
+def near(spheres, reach) -> Pairs:
+    """Pairs whose centres are no farther apart than the first one's reach, (count,) float array."""
+    if not spheres.count:
+        return Pairs(*np.empty((2, 0), dtype=np.int64), np.empty((0, 3)))
+    size, centers = spheres.size, wrapped(spheres.centers, spheres.size)
+    spans = [np.arange(-k, k + 1) for k in np.ceil(reach.max() / size).astype(int)]
+    cells = np.stack(np.meshgrid(*spans, indexing="ij"), axis=-1).reshape(-1, 3) * size
+    places = (centers[None] + cells[:, None]).reshape(-1, 3)
+    found = cKDTree(places).query_ball_point(centers[: spheres.count], reach, return_sorted=True)
+    here = np.repeat(np.arange(spheres.count), [len(each) for each in found])
+    other = np.concatenate(found).astype(np.int64)
+    there, way = other % len(centers), places[other] - centers[here]
+    apart = np.any(way != 0, axis=1)
+    return Pairs(here[apart], there[apart], way[apart])
+
+
 def wrapped(points, size):
     """Points moved into a periodic cell, as trees want them: from 0 to below its size."""
     inside = points - size * np.floor(points / size)

@@ -7,12 +7,11 @@ however narrow the gaps: sources near one contact of a sphere are no nearer to t
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from demheat.runtime.progress import stage
+from references.multipole.arrangement import Pairs, near
 from references.multipole.exchange import exchange
 from references.multipole.sums import entries
 from references.multipole.translations import complex_table, received
@@ -30,29 +29,11 @@ ORDERS, MOST_BYTES = (16, 24, 32, 40, 48, 56, 64, 72), 2e9
 ALIKE = 12
 
 
-class Pairs(NamedTuple):
-    """Each sphere that counts, beside others or their images that are near."""
-
-    here: np.ndarray  # (k,) int array: The sphere
-    there: np.ndarray  # (k,) int array: The other
-    way: np.ndarray  # (k, 3) float array, length: From the one's centre to the image of the other's
-
-
 def near_pairs(spheres) -> Pairs:
     """Pairs whose gap is less than `WIDEST`."""
-    size, radii = spheres.size, spheres.radii
-    reach = (2 + WIDEST) * float(radii.max())
-    spans = [np.arange(-k, k + 1) for k in np.ceil(reach / size).astype(int)]
-    cells = np.stack(np.meshgrid(*spans, indexing="ij"), axis=-1).reshape(-1, 3) * size
-    centers = spheres.centers - size * np.floor(spheres.centers / size)
-    places = (centers[None] + cells[:, None]).reshape(-1, 3)
-    found = cKDTree(places).query_ball_point(centers[: spheres.count], reach, return_sorted=True)
-    here = np.repeat(np.arange(spheres.count), [len(each) for each in found])
-    other = np.concatenate(found).astype(np.int64)
-    there, way = other % len(radii), places[other] - centers[here]
-    apart = np.linalg.norm(way, axis=1)
-    mean = 0.5 * (radii[here] + radii[there])
-    kept = (apart > 0) & (apart < (2 + WIDEST) * mean)
+    radii = spheres.radii
+    here, there, way = near(spheres, np.full(spheres.count, (2 + WIDEST) * float(radii.max())))
+    kept = np.linalg.norm(way, axis=1) < (2 + WIDEST) * 0.5 * (radii[here] + radii[there])
     return Pairs(here[kept], there[kept], way[kept])
 
 

@@ -9,9 +9,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from references.multipole.arrangement import wrapped
+from references.multipole.arrangement import near
 
 # An alpha beyond which pairs are not looked for: from one degree to the next but one no more than .0025 is left.
 FAST = 1.5
@@ -33,19 +32,9 @@ class Beside(NamedTuple):
 
 def beside(spheres) -> Beside:
     """All pairs among which the slowest may be."""
-    radii, own, shortest = spheres.radii, np.arange(spheres.count), float(np.min(spheres.size))
-    if not spheres.count:
-        return Beside(*np.empty((3, 0)))
-    tree = cKDTree(wrapped(spheres.centers, spheres.size), boxsize=spheres.size)
     # Of a sphere and a smaller one no centre farther than this makes less.
-    found = tree.query_ball_point(tree.data[own], 2 * radii[own] * math.cosh(FAST))
-    one, two = np.repeat(own, [len(each) for each in found]), np.concatenate(found).astype(np.int64)
-    one, two = one[one != two], two[one != two]
-    apart = spheres.centers[one] - spheres.centers[two]
-    apart = np.linalg.norm(apart - spheres.size * np.round(apart / spheres.size), axis=1)
-    # And each beside its own image.
-    pairs = np.stack([radii[one], radii[two], apart])
-    pairs = np.hstack([pairs, np.stack([radii[own], radii[own], np.full(len(own), shortest)])])
+    here, there, way = near(spheres, 2 * math.cosh(FAST) * spheres.radii[: spheres.count])
+    pairs = np.stack([spheres.radii[here], spheres.radii[there], np.linalg.norm(way, axis=1)])
     large, small = np.maximum(*pairs[:2]), np.minimum(*pairs[:2])
     return Beside(np.minimum(alphas(*pairs), FAST), large / pairs[2], small / large)
 

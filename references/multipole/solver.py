@@ -18,7 +18,7 @@ from demheat.field import Field, Samples
 from demheat.runtime.deadline import budget
 from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
-from demheat.scene.inputs import finite, flag, whole
+from demheat.scene.inputs import finite, whole
 from demheat.tensor import axis_loads
 from references.midpoints import check_points_per_axis, midpoints
 from references.multipole.arrangement import arrange, smallest_gap
@@ -26,10 +26,10 @@ from references.multipole.at_rest import at_rest
 from references.multipole.field import Evaluator
 from references.multipole.nearest_images import beside
 from references.multipole.third_order import check_order
-from references.multipole.truncation import ACCURACY, by_changes, by_images, converged, field_truncation, inexactness
+from references.multipole.truncation import ACCURACY, by_images, converged, field_truncation, inexactness
 from references.threads import MOST_THREADS
 
-# Of the accuracy that is to be sure: the rest is for higher degrees and for exchange by cells.
+# Of the accuracy: the rest is for higher degrees and for exchange by cells.
 MOST_TOLERANCE = 0.9
 
 
@@ -39,7 +39,6 @@ def solve(
     order: int | None = None,
     accuracy: float | None = None,
     tolerance: float | None = None,
-    sure: bool = False,
     points_per_axis: int = 24,
     threads: int = 1,
     seconds: float | None = None,
@@ -56,13 +55,11 @@ def solve(
         where spheres touch, or so nearly that no degree would do, near pairs are solved by all degrees. With an order
         given nothing is refused: `stats["truncation"]` says what error remains.
     accuracy : float, optional
-        Relative, of the mean flux; by default 1e-5. With an order given it only says how exactly that is solved, by
-        default to 1e-10: with 1e-3 the conductivity of 83 spheres changes by 3e-7, at an eighth of the cost.
+        Relative, of the mean flux, by default 1e-5: half of the conductivity's interval (`Field.error`) is within it.
+        With an order given it only says how exactly that is solved, by default to 1e-10: with 1e-3 the conductivity of
+        83 spheres changes by 3e-7, at an eighth of the cost.
     tolerance : float, optional
         Relative residual of the linear system; by default a thousandth of the accuracy, or 1e-10 with an order alone.
-    sure : bool
-        Whether half of the conductivity's interval (`Field.error`) is to be within the accuracy, not just what changes
-        tell of the rest.
     points_per_axis : int
         The samples are the midpoints of so many equal cells along each axis.
     threads : int
@@ -74,9 +71,9 @@ def solve(
     Field
         The temperature of a periodic cell is the mean gradient times the position plus a periodic part of zero mean. Of
         its `stats`, `truncation` is the relative error of the mean flux that higher degrees would remove, extrapolated
-        from the last changes; `remainder` the same as gaps ask for and `inexactness` that of degrees kept, by which the
-        interval goes; `field_truncation` the largest term of the last two degrees in the flux at an interface, over the
-        mean gradient; `smallest_gap` in metres, mirror images included; `pairs` how many near ones are solved by all
+        from the last changes as gaps ask for, `inexactness` that of degrees kept: half of the interval is their sum;
+        `field_truncation` the largest term of the last two degrees in the flux at an interface, over the mean gradient;
+        `smallest_gap` in metres, mirror images included; `pairs` how many near ones are solved by all
         degrees, 0 where that need not be; `convergence` pairs (order, conductivity). In gaps of such pairs the flux at
         points lacks what is beyond the order.
 
@@ -97,10 +94,10 @@ def solve(
     42.640
     """
     with budget(seconds):
-        _check_knobs(order, accuracy, tolerance, sure, points_per_axis, threads)
+        _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
         check_scene(scene)
         scene.require(steady=True, takes=("resistance", "perfect"))
-        wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "sure": sure, "threads": threads}
+        wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads}
         return _solved(scene, points_per_axis, wanted)
 
 
@@ -110,7 +107,6 @@ def solve_axes(
     order: int | None = None,
     accuracy: float | None = None,
     tolerance: float | None = None,
-    sure: bool = False,
     points_per_axis: int = 24,
     threads: int = 1,
     seconds: float | None = None,
@@ -121,8 +117,8 @@ def solve_axes(
     system: sums for a higher degree than one load needs are those of all.
     """
     with budget(seconds):
-        _check_knobs(order, accuracy, tolerance, sure, points_per_axis, threads)
-        wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "sure": sure, "threads": threads}
+        _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
+        wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads}
         wanted |= {"kept": {}}
         return tuple(_solved(load, points_per_axis, wanted) for load in axis_loads(scene))
 
@@ -180,7 +176,7 @@ def _degrees(field):
     stats, widest = field.stats, max((each.radius for each in field.scene.inclusions), default=0.0)
     slope = field.scene.gradient if field.scene.periodic else np.ptp(list(field.wall_temperature.values()))
     slope = np.linalg.norm(slope) / (1.0 if field.scene.periodic else field.scene.size[field.scene.axis])
-    relative = stats["remainder"] + stats["inexactness"]
+    relative = stats["truncation"] + stats["inexactness"]
     return known(field, relative, "higher degrees", temperature=float(stats["field_truncation"] * slope * widest))
 
 
@@ -199,8 +195,7 @@ def _stats(scene, arrangement, history):
         "iterations": last.iterations,
         "residual": last.residual,
         "inexactness": inexactness(last),
-        "truncation": by_changes(history).left,
-        "remainder": by_images(history, beside(spheres)).left,
+        "truncation": by_images(history, beside(spheres)).left,
         "field_truncation": field_truncation(spheres, last, gradient),
         "smallest_gap": smallest_gap(spheres) * unit,
         "pairs": last.pairs,
@@ -208,19 +203,15 @@ def _stats(scene, arrangement, history):
     }
 
 
-def _check_knobs(order, accuracy, tolerance, sure, points_per_axis, threads):
+def _check_knobs(order, accuracy, tolerance, points_per_axis, threads):
     if order is not None:
         check_order(order)
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
         if value is not None:
             finite(name, value, "a number from 1e-14 to below 1", lambda v: 1e-14 <= v < 1)
-    flag("sure", sure)
-    if sure and order is not None:
-        raise ValueError(f"order = {order}: must not be given to be sure of an accuracy, which raises it")
     wanted = ACCURACY if accuracy is None else accuracy
-    if sure and tolerance is not None and tolerance > MOST_TOLERANCE * wanted:
-        most = MOST_TOLERANCE * wanted
-        raise ValueError(f"tolerance = {tolerance:g}: must be <= {most:g} to be sure of the accuracy, {wanted:g}")
+    if order is None and tolerance is not None and tolerance > MOST_TOLERANCE * wanted:
+        raise ValueError(f"tolerance = {tolerance:g}: must be <= {MOST_TOLERANCE} of the accuracy, {wanted:g}")
     check_points_per_axis(points_per_axis)
     valid = f"an integer >= 1; at most {MOST_THREADS}"
     whole("threads", threads, valid, lambda v: 1 <= v <= MOST_THREADS)

@@ -33,7 +33,7 @@ EXACT = 1e-10
 ACCURACY = 1e-5
 # Bounds on the ratio of successive changes, of two degrees each, by which the rest is extrapolated.
 RATIOS = (0.2, 0.95)
-# What the rest is raised by where the gap tells that ratio: arrays of study `intervals`, even seeds, ask for .9.
+# What the rest is raised by: arrays of study `intervals`, even seeds, ask for .9.
 SURE = 1.5
 # The least ratio where pairs are solved by all degrees, of eight degrees each: in cubic order .07 to .2 were found.
 STEADY = 0.3
@@ -41,11 +41,11 @@ STEADY = 0.3
 SMALL = 2.0
 
 
-def converged(arrangement: Arrangement, *, order, accuracy, tolerance, sure=False, threads=1, kept=None):
-    """Solutions of rising order, two degrees apart; the last is the answer. `sure` if half of its interval is asked."""
+def converged(arrangement: Arrangement, *, order, accuracy, tolerance, threads=1, kept=None):
+    """Solutions of rising order, two degrees apart; the last is the answer."""
     spheres = arrangement.spheres
     highest = highest_order(spheres)
-    rest = partial(_shown, near=beside(spheres)) if sure else by_changes
+    rest = partial(_shown, near=beside(spheres))
     if order is not None and order > highest:
         raise ValueError(f"order = {order}: must be <= {highest} for {len(spheres.radii)} spheres in memory and time")
     exact, accuracy = order is not None and accuracy is None, ACCURACY if accuracy is None else accuracy
@@ -138,22 +138,8 @@ class Rest(NamedTuple):
     ratio: float
 
 
-def by_changes(history) -> Rest:
-    """Twice what is left if changes go on as a geometric series.
-
-    In a symmetric array some degrees hardly matter: the last change but one counts as well. Twice, as ratios rise
-    slowly with the order where gaps are small.
-    """
-    changes = _changes(history)
-    if not changes:
-        return Rest(0.0, RATIOS[0])
-    ratio = float(np.clip(_mean_ratio(changes) if changes[0] else RATIOS[0], *RATIOS))
-    before = changes[-2] * ratio if len(changes) > 2 else 0.0
-    return Rest(2 * max(changes[-1], before) * ratio / (1 - ratio), ratio)
-
-
 def by_images(history, near) -> Rest:
-    """What is expected to be left, by `nearest_images` of the pairs that are `near`.
+    """What higher degrees are expected to remove, by `nearest_images` of the pairs that are `near`.
 
     Terms fall by no more than exp(-2 alpha) from degree to degree, from any of the last changes, as some degrees hardly
     matter in a symmetric array. A sphere that is small beside the waves of a degree on a larger one answers their
@@ -186,7 +172,7 @@ def _rising(ratio, order):
 
 
 def _shown(history, near):
-    """The same with how exactly the last was solved, as intervals have it."""
+    """Half of the interval: the same with how exactly the last was solved."""
     rest = by_images(history, near)
     return rest._replace(left=rest.left + inexactness(history[-1]))
 

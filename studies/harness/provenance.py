@@ -14,8 +14,6 @@ from studies.harness.methods import path_of
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("demheat", "references", "benchmark", "studies")
-# Says of which code a row is, and makes no number of it.
-ASIDE = ("studies/harness/provenance.py",)
 # Of a study: sentences why claims fail, or have room.
 WORDS = ("FAILS", "REASONS")
 LIBRARIES = ("numpy", "scipy", "numba", "pyamg", "scikit-fem", "gmsh", "pyfftw", "multivoro")
@@ -93,7 +91,7 @@ def _alike(stored):
     """Whether nothing but words of the packages has changed since a commit; not if it is unknown."""
     try:
         told = _git("diff", "--name-status", "--no-renames", "-z", stored, "--", *PACKAGES).decode().split("\0")
-        changed = {path: how for how, path in zip(told[::2], told[1::2], strict=False) if path not in ASIDE}
+        changed = {path: how for how, path in zip(told[::2], told[1::2], strict=False)}
         if _untracked() or any(how != "M" or not path.endswith(".py") for path, how in changed.items()):
             return False
         return all(_work(_git("show", f"{stored}:{path}")) == _work((ROOT / path).read_bytes()) for path in changed)

@@ -1,11 +1,12 @@
-"""Intervals of 418 drawn scenes of every kind, half of them for judging only: how often each method's own holds.
+"""Intervals of 440 drawn scenes of every kind, half of them for judging only: how often each method's own holds.
 
 Each method answers by its defaults, at a resolution drawn by the scene's seed, and its interval is what `Field.error`
 gives by itself. Kinds: cubic arrays up to nearly touching, specks, copies in boxes up to 1:20, coats and layers down to
 a thousandth and less, fibres, rods, checkerboards, plates, rods of any sides, unions, level sets told in eight ways,
-images, spheres at random, needles and discs up to 1:20, half-spaces, and bodies without a closed form; contrasts from
-1e-6 to 1e6. What is true is a closed form of the scene, or of one that must conduct alike, Keller's duality, Maxwell's
-estimate of what is small and far apart, multipoles, or finer elements, each with its own doubt.
+images, spheres at random, needles and discs up to 1:20, half-spaces, bodies without a closed form, and large spheres
+with small satellites; contrasts from 1e-6 to 1e6. What is true is a closed form of the scene, or of one that must
+conduct alike, Keller's duality, Maxwell's estimate of what is small and far apart, multipoles, finer ones, or finer
+elements, each with its own doubt.
 
 An interval holds if it has a point in common with what is true; how many hold by that doubt alone, and not with its
 middle, is said. Scenes of odd seeds are for judging only: nothing is ever changed because of them (of particles and
@@ -34,8 +35,8 @@ LOOKED_AT = ("dem", "fem")
 # And of these kinds by these methods, all of them.
 SEEN = {"image": ("dem", "fem", "fft-em"), "level set": ("dem", "fem")}
 SHOWN = ("array", "layers", "half-space")
-# Whose truth is not theirs: single spheres in a cell.
-BY_MULTIPOLES = ("array", "speck", "copies")
+# Single spheres in a cell, whose truth is not theirs, and what finer ones judge.
+BY_MULTIPOLES = ("array", "speck", "copies", "satellites")
 LEAST, WIDE = 0.98, 5.0
 MANY = 20  # Scenes from which on shares are judged
 # What the same methods close in on (`Field.extrapolated`), with an interval of its own: smooth bodies, each by itself.
@@ -174,7 +175,7 @@ def words(df):
     from studies.intervals.means import answers, in_words
 
     each = answers(df)
-    return f"on {_scenes(df)} scenes of nineteen kinds there held {in_words(each[~each['method'].isin(LIMITS)])}"
+    return f"on {_scenes(df)} scenes of twenty kinds there held {in_words(each[~each['method'].isin(LIMITS)])}"
 
 
 def limits(df):

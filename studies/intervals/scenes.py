@@ -275,11 +275,29 @@ def _body(rng):
     return Drawn(scene, truth.finer(scene))
 
 
+def _satellites(rng):
+    """A large sphere with one to twelve small ones about it, 3 to 20 times smaller, gaps down to a third of theirs."""
+    count, core, others = int(rng.integers(1, 13)), _contrast(rng), _contrast(rng)
+    ratio, gap = 10.0 ** rng.uniform(0.5, 1.3), 10.0 ** rng.uniform(-0.5, 0.5)
+    small = rng.uniform(0.3, 0.48) / (ratio + 2 + gap)
+    large, away = ratio * small, (ratio + 1 + gap) * small
+    ways: list[np.ndarray] = []
+    for way in rng.normal(size=(200, 3)):
+        way /= np.linalg.norm(way)
+        if len(ways) < count and all(away * np.linalg.norm(way - other) > 2.2 * small for other in ways):
+            ways.append(way)
+    spheres = [Sphere((0.5,) * 3, large, Material(core))]
+    spheres += [Sphere(0.5 + away * way, small, Material(others)) for way in ways]
+    scene = Scene((1.0,) * 3, ONE, spheres, **_load(rng, (1.0,) * 3, periodic=True))
+    return Drawn(scene, truth.finer_multipoles(scene))
+
+
 DRAW = {
     "array": _array, "speck": _speck, "copies": _copies, "coat": _coat, "layers": _layers, "fibre": _fibre,
     "rod": _rod, "board": _board, "plate": _plate, "dual": _dual, "union": _union, "level set": _level,
     "image": _image, "spheres": _spheres("spheres, periodic"), "spheres, walls": _spheres("spheres, walls"),
     "polydisperse": _spheres("polydisperse"), "needles, discs": _small, "half-space": _half, "bodies": _body,
+    "satellites": _satellites,
 }  # fmt: skip
 KINDS = tuple(DRAW)
 

@@ -12,6 +12,8 @@ from studies.common.drawn import ACCURACY
 # Edges of the finer elements, of the box.
 FINE = 1 / 18
 ROUNDING = 1e-9
+# Of the conductivity: where multipoles judge others that are ten times rougher at least.
+FINER = 2e-5
 
 
 class Truth(NamedTuple):
@@ -72,6 +74,16 @@ def finer(scene: Scene):
     def known():
         field = fem.solve(scene, size=FINE * max(scene.size))
         return Truth(field.error.lower, field.error.upper, "finer elements")
+
+    return known
+
+
+def finer_multipoles(scene: Scene):
+    """By multipoles that are finer than those that are judged, in doubt by what they say."""
+
+    def known():
+        error = multipole.solve(scene, accuracy=FINER).error
+        return Truth(error.lower, error.upper, "finer multipoles")
 
     return known
 

@@ -72,6 +72,10 @@ def _panel(axes, df, scene, quantity, known):
         )
         if tie:
             axes.axvspan(*_about(target), color=GREY, alpha=0.18, linewidth=0, label="tie", zorder=0)
+    if not any(every.values()):
+        axes.text(
+            0.5, 0.5, "no method within\nthe seconds of a search", transform=axes.transAxes, ha="center", fontsize=7
+        )
     mark = " *" if scene in TUNED else " (held back)" if scene in HELD_BACK else ""
     axes.set_title(f"{TITLES[scene]}{mark}", fontsize=9)
 

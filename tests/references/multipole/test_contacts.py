@@ -1,7 +1,7 @@
 """Spheres that nearly touch, or do: pairs by all degrees among the few of the whole."""
 
 import math
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -28,9 +28,10 @@ def carried_on(scene, accuracy=1e-5):
     arrangement = arrange(scene)
     plain = [homogeneous(arrangement.spheres, arrangement.gradient)]
     wanted = {"accuracy": accuracy, "tolerance": 1e-10, "threads": 1, "kept": {}}
-    history = truncation._in_contact(arrangement, plain, truncation.by_changes, **wanted)
+    rest = partial(truncation.by_images, near=beside(arrangement.spheres))
+    history = truncation._in_contact(arrangement, plain, rest, **wanted)
     assert history[-1].pairs > 0
-    return history[-1].mean_flux / arrangement.unit, truncation.by_images(history, beside(arrangement.spheres)).left
+    return history[-1].mean_flux / arrangement.unit, rest(history).left
 
 
 def in_order(gap, contrast):

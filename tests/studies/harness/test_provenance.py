@@ -97,22 +97,6 @@ def test_docstrings_of_classes_and_functions_do_no_work(repository):
     assert not provenance.of_this_code(first)
 
 
-def test_what_only_says_of_which_code_a_row_is_does_no_work(repository):
-    root, git = repository
-    (path := root / provenance.ASIDE[0]).parent.mkdir(parents=True)
-    path.write_text("A = 1\n")
-    git("add", ".")
-    git("commit", "-qm", "another")
-    first = provenance.commit()
-    path.write_text("A = 2\n")
-    git("commit", "-qam", "changed")
-    assert provenance.of_this_code(first)
-    (root / "demheat" / "dem.py").write_text("A = 2\n")
-    git("commit", "-qam", "both")
-    assert not provenance.of_this_code(first)
-
-
-@pytest.mark.parametrize("how", ["gone", "new", "new and unknown", "a table"])
 def test_files_that_come_or_go_do_work(repository, how):
     root, git = repository
     (root / "demheat" / "table.csv").write_text("1\n")
