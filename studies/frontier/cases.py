@@ -18,7 +18,7 @@ SHORT, LONGER = (
     8.0,
     # Of surfaces that are searched for a few values tell too little.
     {"3000 spheres": 80.0, "primitive at 20": 40.0, "ellipsoids at 50": 30.0, "joined at 0.1": 30.0}
-    | {"24 of 1 to 4": 30.0},
+    | {"30 of 1 to 4": 30.0},
 )
 # Ways that laws are fitted to.
 LAWS = ("dem", "fem", "fft-loose", "multipole-loose")

@@ -185,7 +185,7 @@ def _three_thousand():
 
 def _unlike():
     return gallery.dispersion(
-        24, fraction=0.35, ratio=4.0, gap=0.05, seed=LAWS, matrix=HADDAD, inclusion=scaled(HADDAD, 30.0)
+        30, fraction=0.35, ratio=4.0, gap=0.05, seed=LAWS, matrix=HADDAD, inclusion=scaled(HADDAD, 30.0)
     )
 
 
@@ -211,14 +211,14 @@ FOR_LAWS: dict[str, Callable[[], Scene]] = {
     "box of 1:3:1": _tall,
     "10 pores": _pores,
     "3000 spheres": _three_thousand,
-    "24 of 1 to 4": _unlike,
+    "30 of 1 to 4": _unlike,
 }
 SCENES = STEADY | HELD_BACK
 # Whose bodies are disjoint spheres, as multipoles ask for.
 ONLY_SPHERES = (
     *("third", "third at 0.01", "third at 1000", "third at infinity", "half", "half at 100", "polydisperse"),
     *("83 spheres", "1000 spheres", "unequal, f = .5", "30 at 0.001", "infinite", "resistance", "box of 1:1:4"),
-    *("5000 spheres", "box of 1:3:1", "10 pores", "3000 spheres", "24 of 1 to 4"),
+    *("5000 spheres", "box of 1:3:1", "10 pores", "3000 spheres", "30 of 1 to 4"),
 )
 # Of scenes with many bodies, around which elements begin where other methods end.
 MESHED = ("83 spheres", "polydisperse", "unequal, f = .5", "30 at 0.001", "resistance", "box of 1:1:4")
