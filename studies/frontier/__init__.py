@@ -45,8 +45,9 @@ REASONS = {
 FAILS = {
     "what `effective` took, factor between, largest": (
         "gyroid to .1 %: the elements that it began with had an interval of .02 % at once, where the law, which goes "
-        "by one other surface, asks for shorter ones; unequal spheres to .1 and .01 %, ellipsoids to .1 %: 3 to "
-        "4 times, of spheres as intervals were widened for unlike radii, on which the law has one scene"
+        "by one other surface, asks for shorter ones; square rod to .1 %: three rounds, as beside edges intervals fall "
+        "with the first power of the distance, which no scene of the laws shows; pairs of balls to .1 %, unequal "
+        "spheres to .01 %: 3 to 4 times"
     ),
 }
 TIMEOUT = 900.0
