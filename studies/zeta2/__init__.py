@@ -55,8 +55,8 @@ FAILS = {
         "the ten LSA cells of f = .1 happen to lie low: by those of .2 and .3 alone it is 7.4 %, 3.5 standard errors"
     ),
     "truncation left": (
-        "the limit was set for what changes of degrees tell; what is told now is half of an interval, which gaps of .02 "
-        "diameters ask to be wider at degree 10: beside degree 20, known to 9e-7, the worst cell lacks 6.6e-5"
+        "the limit was set for what changes of degrees tell; what is told now is half of an interval, which gaps of "
+        ".02 diameters ask to be wider at degree 10: beside degree 20, known to 9e-7, the worst cell lacks 6.6e-5"
     ),
 }
 
