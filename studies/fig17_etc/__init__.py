@@ -58,6 +58,7 @@ ENOUGH = 1e-4
 REASONS = {
     "converged, off the multipole value": "one limit for all methods and cells, of which the worst has half",
     "worst resolution, off the multipole value": "one limit for all methods, of which the worst has half",
+    "what higher degrees would change": "twice the accuracy that they are asked for, of which they end at half",
     "What unequal spheres change": "a tenth of what it might explain; its interval is as wide",
 }
 # Why claims on the stored rows fail.

@@ -64,6 +64,10 @@ FAILS = {
     "FEM, extrapolated: half of the interval": (
         "on meshes as coarse as these runs turn or differ little where errors cancel, and the interval counts on that"
     ),
+    "multipoles: half of the interval": (
+        "4.6 when degrees rose until changes were small; they rise until this is narrow now, two or so farther, where "
+        "changes of arrays fall faster than the worst that gaps allow, on which the interval counts"
+    ),
     "DEM: half of the interval": (
         "half of the scenes have specks and needles, whose intervals reach to what leaving them out changes, coats, or "
         "spheres whose errors fell to a tenth by tiles and twins, changes between runs by less; an order of 2.5 made "
