@@ -28,7 +28,7 @@ ESTIMATES = {
     "upper bound of Hashin and Shtrikman": lambda *args: bounds.hashin_shtrikman(*args)[1],
     "Bruggeman, differential": bounds.bruggeman_differential,
     "Bruggeman, symmetric": bounds.bruggeman,
-    "Rayleigh, simple cubic array": bounds.rayleigh,
+    "Rayleigh's formula, to the octupole, simple cubic array": bounds.rayleigh,
     "Lewis and Nielsen": bounds.lewis_nielsen,
     "Agari and Uno, nothing fitted": bounds.agari_uno,
 }

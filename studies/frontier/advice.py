@@ -49,13 +49,19 @@ def advised(df):
     offs, beside = [each.off for each in found], [each.other_s / each.took_s for each in found if each.other]
     return (
         f"Of {len(every)} pairs of scene and accuracy {closed} have a closed form; `effective` got there on "
-        f"{len(found)} of the others within {ASKED_S:g} seconds, where `recommend` had said its cost within a "
-        f"factor of {SAID:g} on {near}, {statistics.median(offs):.2g} in the median and {max(offs):.2g} at most; in "
-        f"the same time another method got there on {len(beside)} of these"
-        f"{f', at {min(beside):.2g} times its cost or more' if beside else ''}; it cost "
+        f"{len(found)} of the others within {ASKED_S:g} wall seconds, where `recommend` had said its cost in CPU "
+        f"seconds within a factor of {SAID:g} on {near}, {statistics.median(offs):.2g} in the median and "
+        f"{max(offs):.2g} at most; in the same wall time another method got there on {len(beside)} of these"
+        f"{f', at {_among(beside)} times its cost' if beside else ''}; it cost "
         f"{statistics.median(_over(df, found)):.2g} times, in the median, what one solve of the right size costs "
         f"whoever knows the truth; on {late} time was over."
     )
+
+
+def _among(factors):
+    """The least and the most of some factors."""
+    low, high = (f"{each:.2g}" for each in (min(factors), max(factors)))
+    return low if low == high else f"{low} to {high}"
 
 
 def _of_searches(df):

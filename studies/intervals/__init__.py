@@ -39,6 +39,8 @@ SHOWN = ("array", "layers", "half-space")
 BY_MULTIPOLES = ("array", "speck", "copies", "satellites")
 LEAST, WIDE = 0.98, 5.0
 MANY = 20  # Scenes from which on shares are judged
+# Methods whose wide intervals are counted, and what half of such an interval is more than, over what is true.
+TAILS, BEYOND = ("dem", "fft"), (0.1, 0.5)
 # What the same methods close in on (`Field.extrapolated`), with an interval of its own: smooth bodies, each by itself.
 # Orders and safeties were found on seeds below the first of these, so that all of them are for judging only.
 LIMITS = {"dem-limit": "dem", "fem-limit": "fem", "fft-limit": "fft"}
@@ -180,6 +182,19 @@ def words(df):
 
     each = answers(df)
     return f"on {_scenes(df)} scenes of twenty kinds there held {in_words(each[~each['method'].isin(LIMITS)])}"
+
+
+def widest(df):
+    """What share of intervals is wide, of methods that answer on any scene."""
+    from studies.intervals.means import answers, half, title
+
+    each = answers(df)
+    halves = {name: half(each[each["method"] == name]) for name in TAILS}
+    said = []
+    for of in BEYOND:
+        shares = [f"{100 * (wide > of).mean():.2g} % ({title(name)})" for name, wide in halves.items()]
+        said.append(f"more than {100 * of:g} % of the truth on {' and '.join(shares)}")
+    return f"half of the interval was {', '.join(said)}"
 
 
 def limits(df):

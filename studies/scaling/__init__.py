@@ -1,4 +1,4 @@
-"""How costs grow: with particles to a million, with inclusions to 3000; every stage of every method.
+"""How costs grow: with particles to 3e7, with spheres to 5000; every stage of every method.
 
 Spheres of silica in epoxy, k ratio 7.692, in a periodic cell under a mean gradient. `inclusions` keeps what a method
 spends on an inclusion and adds inclusions: equal spheres, three tenths of the volume. `goal` sets the scene of 5000

@@ -16,8 +16,7 @@ def table(df):
     of k against the multipoles' of the same spheres, the nearest there are: those of many are known to .01 %, no more;
     coarse rows are there for their costs. "of triad" is the bandwidth of the product of the network's matrix with a
     vector over that of the triad, a = b + s c on arrays too large for caches, right after it with as many threads.
-    Exponents are fitted to rows of 100 inclusions or 50 000 unknowns and more, each with its standard error. The last
-    lines say what 1e9 unknowns would take if the fits went on.
+    Exponents are fitted to rows of 100 inclusions and more, each with its standard error.
     """
     import pandas as pd
 
