@@ -148,4 +148,4 @@ def plot(df):
     """Cost over error, a panel for each scene."""
     from studies.common.searches import figure
 
-    return figure.plot(df, "flux", xlim=(5.0, 0.2), ticks=(3.0, 1.0, 0.3))
+    return figure.plot(df, "flux", told=(3.0, 1.0, 0.3, 0.1))

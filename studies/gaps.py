@@ -32,6 +32,8 @@ LINKS = "fft-links"
 ASKED = (*(name for name in SPENT if name != "multipole"), LINKS)
 # Radii of the pair, and per cent within which an answer is right.
 LARGE, SMALL, RIGHT = 0.3, 0.15, 2.0
+# Scenes and contrasts of the figure's panels.
+SHOWN = (("cubic", 100.0), ("cubic", math.inf), ("pair", math.inf))
 # Digits that lattice sums must have to judge multipoles.
 DIGITS = 4
 # A limit that is far from the value, and why it is no nearer.
@@ -187,23 +189,27 @@ def plot(df):
     from matplotlib import pyplot
 
     rows = judged(df)
-    figure, panels = pyplot.subplots(1, 3, figsize=(13, 4.8), sharey=True)
-    for axes, (scene, contrast) in zip(
-        panels, (("cubic", 100.0), ("cubic", math.inf), ("pair", math.inf)), strict=True
-    ):
+    # Of quick rows some panels would be empty, which no logarithmic axis can be.
+    shown = [each for each in SHOWN if len(_answers(rows, *each))]
+    panels = max(1, len(shown))
+    figure, panels = pyplot.subplots(1, panels, figsize=(4.4 * panels, 4.8), sharey=True, squeeze=False)
+    for axes, (scene, contrast) in zip(panels[0], shown, strict=False):
         for name in ASKED:
-            mine = pick(rows, scene=scene, contrast=contrast, name=name)
-            mine = mine[mine["status"] == "ok"]
+            mine = pick(_answers(rows, scene, contrast), name=name)
             axes.plot(mine["gap"], mine["error_percent"].abs(), **look(name))
         axes.axhline(RIGHT, color=GREY, linewidth=1)
         kind = "cubic order" if scene == "cubic" else "two unlike spheres"
         axes.set(xscale="log", yscale="log", xlabel="gap / radius", title=f"{kind}, contrast {contrast:g}")
-        if len(pick(rows, scene=scene, contrast=contrast)):
-            axes.invert_xaxis()
-    panels[0].set_ylabel("|error of the conductivity|, %")
+        axes.invert_xaxis()
+    panels[0, 0].set_ylabel("|error of the conductivity|, %")
     figure.suptitle(f"Answers right to {RIGHT:g} %, or inside of their interval\n{_held(rows)}", fontsize=11)
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=min(3, panels.size))
     return figure
+
+
+def _answers(rows, scene, contrast):
+    """Judged rows of one panel that are no refusals."""
+    return pick(rows, scene=scene, contrast=contrast, status="ok")
 
 
 def _held(rows):

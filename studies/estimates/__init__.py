@@ -156,4 +156,4 @@ def plot(df):
     """What each method says of its error against its error, one point for each scene."""
     from studies.estimates.figure import draw
 
-    return draw(pick(df, part="unseen"), NAMES)
+    return draw(pick(df, part="unseen"), NAMES, BESIDE)

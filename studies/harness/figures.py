@@ -54,6 +54,8 @@ def look(name, **more):
 
 # What is nearer to nothing, or farther from its limit, than by this factor is drawn there; letters of a sentence.
 FARTHEST, LONGEST = 1e3, 90
+# What an interval misses, drawn about the method's own mark: no method has this.
+MISS = {"linestyle": "", "marker": "o", "color": BLACK, "markerfacecolor": "none", "markersize": 11, "zorder": 4}
 VERDICTS = {"ok": BLUE, "check": SKY, "FAIL": RED, "not judged": GREY}
 
 

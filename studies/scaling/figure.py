@@ -15,14 +15,15 @@ def plot(df):
     from matplotlib import pyplot
 
     ranked = on_ranks(df)
-    figure, axes = pyplot.subplots(3 if len(ranked) else 2, 2, figsize=(13, 15 if len(ranked) else 10))
+    panels = [["inclusions", "growing"], ["refined", "memory"], *([["ranks", "ranks"]] if len(ranked) else [])]
+    heights = (5, 5, 3.6)[: len(panels)]
+    figure, axes = pyplot.subplot_mosaic(panels, figsize=(13, sum(heights)), height_ratios=heights)
+    _inclusions(axes["inclusions"], df)
+    _stages(axes["growing"], pick(df, part="inclusions", name="dem"), "number", "inclusions, 50 particles each")
+    _stages(axes["refined"], pick(df, part="elements", name="dem"), "unknowns", "unknowns, 83 spheres")
+    _memory(axes["memory"], df)
     if len(ranked):
-        _ranked(axes[2, 0], ranked)
-        axes[2, 1].set_axis_off()
-    _inclusions(axes[0, 0], df)
-    _stages(axes[0, 1], pick(df, part="inclusions", name="dem"), "number", "inclusions, 50 particles each")
-    _stages(axes[1, 0], pick(df, part="elements", name="dem"), "unknowns", "unknowns, 83 spheres")
-    _memory(axes[1, 1], df)
+        _ranked(axes["ranks"], ranked)
     return figure
 
 
@@ -57,6 +58,8 @@ def _stages(ax, rows, by, label):
         if len(group):
             ax.plot(group[by], group["seconds"], marker="o", markersize=4, color=COLOUR[stage], label=stage)
     ax.set(xscale="log", yscale="log", xlabel=label, ylabel="CPU time, s", title="Stages of the DEM")
+    # Room for the legend above the lines.
+    ax.set_ylim(top=5 * ax.get_ylim()[1])
     _slope(ax)
     ax.legend(ncols=2)
 
@@ -80,5 +83,7 @@ def _ranked(ax, rows):
         ax.barh(words, seconds, left=left, color=colour, label=stage)
         left += seconds
     ax.set(xlabel="wall time, s", title="demheat.mpi: unknowns on one rank and on two")
-    ax.legend(ncols=4, loc="upper left", bbox_to_anchor=(-0.2, -0.12))
+    ax.set_axisbelow(True)
+    ax.legend(loc="lower right")
+    ax.set_xlim(right=1.15 * left.max())
     ax.invert_yaxis()

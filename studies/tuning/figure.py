@@ -16,18 +16,20 @@ SERIES = (
     ("BEND x 0", BLUE, UNBENT),
 )
 PARTS = {
-    "error": ("o", BLACK, "error of the conductivity"),
-    "quadrature": ("^", BLUE, "exact temperature's power, too large by"),
-    "misfit": ("v", RED, "power lost by temperatures off the exact ones"),
-    "error_scatter": (".", GREY, "scatter of one packing's error"),
+    "quadrature": (1, "^", BLUE, "exact temperature's power, too large by"),
+    "misfit": (-1, "v", RED, "power lost by temperatures off the exact ones"),
+    "error": (1, "o", BLACK, "their sum, the error: mean, scatter of one packing"),
 }
+BELOW = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13), "fontsize": 9}
+# Below, %, the axis of the parts is linear.
+LINEAR = 1e-4
 
 
 def plot(df):
     """Errors against the factors; parts of the error against the particle size."""
     from matplotlib import pyplot
 
-    figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(15, 4.8))
+    figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(16, 6.2))
     _factors(left, means.summed(means.errors(df, "unseen")))
     _parts(middle, means.parts(df, **SPHERE))
     _powers(right, df)
@@ -42,18 +44,19 @@ def _factors(axes, sums):
         if shipped.empty:
             continue
         own = shipped["median"].iloc[0]
-        axes.axhline(own, color=GREY, linewidth=0.8)
-        where = {"xy": (0.99, own), "xycoords": axes.get_yaxis_transform(), "ha": "right", "va": "bottom"}
-        axes.annotate(f"{particles} particles, as shipped", **where, fontsize=8, color=GREY)
+        axes.axhline(own, color=GREY, linewidth=0.8, zorder=1)
+        axes.plot([], [], color=GREY, marker=mark, linestyle="", label=f"{particles} particles")
         for constant, colour in COLOURS.items():
             mine = pick(rows, constant=constant)
             at = np.append(mine["factor"], 1.0)
             order = np.argsort(at)
-            label = constant if particles == min(MARKS) else None
-            axes.plot(at[order], np.append(mine["median"], own)[order], color=colour, marker=mark, label=label)
+            axes.plot(at[order], np.append(mine["median"], own)[order], color=colour, marker=mark)
+    for constant, colour in COLOURS.items():
+        axes.plot([], [], color=colour, label=constant)
+    axes.plot([], [], color=GREY, linewidth=0.8, label="as shipped")
     axes.set(yscale="log", xlabel="constant over its shipped value", ylabel="median |error| of unseen scenes, %")
-    axes.set_title("One constant at a time")
-    axes.legend()
+    axes.set_title("One constant at a time: least as shipped, or nearly")
+    axes.legend(**BELOW, ncols=3)
 
 
 def _powers(axes, df):
@@ -72,23 +75,31 @@ def _powers(axes, df):
             axes.plot(ends, two + three * ends, color=colour, linewidth=0.8)
     axes.axhline(0.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel="h = particles^(-1/3)", ylabel="error / h^2, %", xlim=(0.0, 0.105))
-    axes.set_title("BEND takes the third order away, the others move the second")
-    axes.legend()
+    axes.set_title("BEND acts on the third order, the others on the second")
+    axes.legend(**BELOW, ncols=2)
 
 
 def _parts(axes, table):
     axes.set_title("One sphere as shipped: two parts of opposite sign")
-    axes.set(xscale="log", yscale="log", xlim=(700, 140_000), xlabel="particles", ylabel="share of the conductivity, %")
+    axes.set(xscale="log", xlim=(700, 140_000), xlabel="particles", ylabel="share of the conductivity, %")
+    # Signed: of a mean that crosses nothing a logarithm would look like convergence.
+    axes.set_yscale("symlog", linthresh=LINEAR)
+    axes.axhline(0.0, color=GREY, linewidth=0.8)
     if table.empty:
         return
-    for name, (mark, colour, label) in PARTS.items():
-        sem = table.get(f"{name}_sem")
-        axes.errorbar(table["particles"], table[name].abs(), sem, color=colour, marker=mark, label=label)
-    axes.legend()
-    if len(table) < 2:
-        return
-    first, last = table.iloc[0], table.iloc[-1]
+    for name, (sign, mark, colour, label) in PARTS.items():
+        axes.errorbar(
+            table["particles"], sign * table[name], table[f"{name}_scatter"], color=colour, marker=mark, label=label,
+            markersize=5, capsize=3, elinewidth=1,
+        )  # fmt: skip
+    if len(table) > 1:
+        _orders(axes, table.iloc[0], table.iloc[-1])
+    axes.legend(**BELOW)
+
+
+def _orders(axes, first, last):
+    """Second and third order in the particle size from the first lost power on."""
     for power in (2, 3):
-        line = first["misfit"] * np.array([1.0, (last["particles"] / first["particles"]) ** (-power / 3)])
+        line = -first["misfit"] * np.array([1.0, (last["particles"] / first["particles"]) ** (-power / 3)])
         axes.plot([first["particles"], last["particles"]], line, color=SKY, linewidth=0.8, linestyle=(0, (1, 2)))
-        axes.annotate(f"order {power}", (last["particles"], line[1]), fontsize=8, color=SKY, ha="right", va="bottom")
+        axes.annotate(f"order {power}", (last["particles"], line[1]), fontsize=8, color=SKY, ha="right", va="top")
