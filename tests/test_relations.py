@@ -40,6 +40,12 @@ SLOW = ("dem-arithmetic", "dem-mean", "dem-plain", "fem", "fem-straight", "fem-p
 NAMES = [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name for name in METHODS]
 
 
+def unknown(method, relation):
+    """Parts that nobody asks: what knows the conductivity alone has no others; particles are the same in time alone."""
+    aside = {"temperature", "flux"} if method.call == "estimate" else set()
+    return aside | (set() if relation == "time" else {"places"})
+
+
 # What thin layers do to particles without twins is left to chance, but to the same in relations that are exact.
 @pytest.mark.filterwarnings("ignore:.*are thin for particles:UserWarning")
 @pytest.mark.parametrize("name", NAMES)
@@ -48,10 +54,11 @@ def test_relations(name):
     for relation, seed in asked.items():
         found = spread(name, relation, seed)
         for part, value in found._asdict().items():
+            if np.isnan(value) and part in unknown(METHODS[name], relation):
+                continue
             most = limit(METHODS[name], relation, part)
             print(f"{name}, {relation}, scene {seed}, {part}: {value:.1e}, limit {most:.1e}")
-            # What knows the conductivity alone has no other parts.
-            if not (value <= most or (np.isnan(value) and METHODS[name].call == "estimate" and part != "conductivity")):
+            if not value <= most:
                 wrong.append((relation, seed, part, value, most))
     first.cache_clear()
     second.cache_clear()

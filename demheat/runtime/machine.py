@@ -8,6 +8,10 @@ from datetime import datetime, timezone
 from functools import cache
 from pathlib import Path
 
+CPUINFO = Path("/proc/cpuinfo")
+# What tells generations apart, as it is called there.
+NUMBERS = {"family": "cpu family", "model": "model"}
+
 
 def here() -> dict[str, str]:
     """When and where a row is made: the time, UTC, to the second, the machine and its host."""
@@ -17,16 +21,22 @@ def here() -> dict[str, str]:
 @cache
 def machine() -> str:
     """Processor model and number of logical processors; no host name, no path."""
-    model = platform.processor() or platform.machine()
     try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        text = CPUINFO.read_text()
     except OSError:
-        lines = []
-    for line in lines:
-        if line.startswith("model name"):
-            model = line.split(":", 1)[1].strip()
-            break
-    return f"{model}, {os.cpu_count()} processors"
+        text = ""
+    return f"{_model(text) or platform.processor() or platform.machine()}, {os.cpu_count()} processors"
+
+
+def _model(text):
+    """What Linux says of its first processor: generations may share a name, and libraries compute otherwise on each."""
+    said: dict = {}
+    for line in text.splitlines():
+        name, _, value = line.partition(":")
+        said.setdefault(name.strip(), value.strip())
+    numbers = [f"{word} {said[name]}" for word, name in NUMBERS.items() if said.get(name)]
+    more = f" ({', '.join(numbers)})" if numbers else ""
+    return f"{said['model name']}{more}" if said.get("model name") else ""
 
 
 @cache

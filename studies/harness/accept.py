@@ -84,7 +84,8 @@ def renewed(study, case, stored, row):
     values = {name: row.get(name) for name in _new_names(study, case, [*stored, *row])}
     state = {name: row.get(name) for name in ("status", "note", "residual")}
     # What was said of the old values is not said of these.
-    state |= dict.fromkeys(VALUES, "") | {"values_commit": row["commit"], "values_when": row["when"]}
+    made = {f"values_{name}": row[name] for name in ("commit", "when", "machine")}
+    state |= dict.fromkeys(VALUES, "") | made
     if values_only(study, case):
         # What a record takes: no cost of that day is asked for, and older code may have taken longer.
         state |= {name: row.get(name, "") for name in (MADE, "load")}

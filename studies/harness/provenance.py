@@ -10,6 +10,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from demheat.runtime.machine import here
+from studies.harness.making import EXCEPT, paths_of
 from studies.harness.methods import path_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -71,14 +72,25 @@ def versions():
 
 
 def commit(file=""):
-    """Short hash of the checked-out commit; "+" and a digest of what differs from it follow where the packages do."""
-    changed = _differences() + (Path(file).read_bytes() if _strange(file) else b"")
+    """Short hash of the checked-out commit; "+" and a digest of what differs from it follow where that makes rows.
+
+    Of a study's file what makes its rows counts (`making`); without, and for studies of others, all packages do.
+    """
+    changed = _differences(_paths(file)) + (Path(file).read_bytes() if _strange(file) else b"")
     return _head() + (f"+{hashlib.sha256(changed).hexdigest()[:6]}" if changed else "")
 
 
 def of_this_code(stored, file=""):
-    """Whether the packages' present source does what that of a commit in a row did: rows made by it are this code's."""
-    return bool(stored) and (stored == commit(file) or ("+" not in stored and not _strange(file) and _alike(stored)))
+    """Whether what makes a study's rows does what it did at a commit of a row: what that has made is this code's."""
+    known = bool(stored) and "+" not in stored and not _strange(file)
+    return bool(stored) and (stored == commit(file) or (known and _alike(stored, _paths(file))))
+
+
+def _paths(file):
+    """What of the packages makes the rows of a study's file, as git is asked for it."""
+    if not (Path(file).name and Path(file).is_relative_to(ROOT / "studies")):
+        return PACKAGES
+    return (*(name for name in PACKAGES if name != "studies"), *paths_of(ROOT, str(file)))
 
 
 def _strange(file):
@@ -87,16 +99,21 @@ def _strange(file):
 
 
 @cache
-def _alike(stored):
-    """Whether nothing but words of the packages has changed since a commit; not if it is unknown."""
+def _alike(stored, paths):
+    """Whether nothing but words has changed there since a commit; not if it is unknown."""
     try:
-        told = _git("diff", "--name-status", "--no-renames", "-z", stored, "--", *PACKAGES).decode().split("\0")
+        told = _git("diff", "--name-status", "--no-renames", "-z", stored, "--", *paths).decode().split("\0")
         changed = {path: how for how, path in zip(told[::2], told[1::2], strict=False)}
-        if _untracked() or any(how != "M" or not path.endswith(".py") for path, how in changed.items()):
+        if _untracked(paths) or any(how != "M" or not path.endswith(".py") for path, how in changed.items()):
             return False
-        return all(_work(_git("show", f"{stored}:{path}")) == _work((ROOT / path).read_bytes()) for path in changed)
+        return all(_works_alike(stored, path) for path in changed)
     except (OSError, subprocess.CalledProcessError, SyntaxError):
         return False
+
+
+@cache
+def _works_alike(stored, path):
+    return _work(_git("show", f"{stored}:{path}")) == _work((ROOT / path).read_bytes())
 
 
 def _work(source):
@@ -124,21 +141,23 @@ def _head():
 
 
 @cache
-def _differences():
-    """What in the packages is at no commit, as bytes: of one process, which has loaded its modules once."""
+def _differences(paths):
+    """What there is at no commit, as bytes: of one process, which has loaded its modules once."""
     try:
-        found = _git("diff", "HEAD", "--", *PACKAGES)
-        for name in _untracked():
+        found = _git("diff", "HEAD", "--", *paths)
+        for name in _untracked(paths):
             found += name + (ROOT / name.decode()).read_bytes()
         return found
     except (OSError, subprocess.CalledProcessError):
         # Outside a repository the source itself must tell.
-        files = sorted(path for name in PACKAGES for path in (ROOT / name).rglob("*.py"))
-        return b"".join(path.read_bytes() for path in files)
+        homes = [ROOT / name for name in paths if not name.startswith(EXCEPT)]
+        files = {path for home in homes for path in (home, *home.rglob("*.py")) if path.is_file()}
+        files -= {ROOT / name.removeprefix(EXCEPT) for name in paths}
+        return b"".join(path.read_bytes() for path in sorted(files))
 
 
-def _untracked():
-    names = _git("ls-files", "--others", "--exclude-standard", "-z", "--", *PACKAGES).split(b"\0")
+def _untracked(paths):
+    names = _git("ls-files", "--others", "--exclude-standard", "-z", "--", *paths).split(b"\0")
     return sorted(filter(None, names))
 
 

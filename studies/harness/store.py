@@ -11,9 +11,12 @@ from demheat.runtime.rows import RowFile
 COST = ("wall_s", "cpu_s", "cpu_spread", "repeats", "peak_mib", "base_mib", "peak_by")
 # Seconds from the start of a row's process to its end: what a record takes, whatever its costs are.
 MADE = "made_s"
-# Where values are from that were made anew without their costs; when they were last made again and found the same;
-# which code found another row of their group the same; and which one found other values.
-VALUES = ("values_commit", "values_when", "replayed_commit", "replayed_when", "borne_commit", "moved_commit")
+# Where values are from, and of which machine, that were made anew without their costs; when they were last made again
+# and found the same; which code found another row of their group the same; and which one found other values.
+VALUES = (
+    *("values_commit", "values_when", "values_machine"),
+    *("replayed_commit", "replayed_when", "borne_commit", "moved_commit"),
+)
 TAIL = (
     *("unknowns", "iterations", "residual"),
     *COST,

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from studies.common.searches.in_time import IN_TIME
 from studies.common.searches.scenes import HELD_BACK, SCENES, STEADY, TUNED
 from studies.common.searches.search import TARGETS
+from studies.common.searches.trails import borne_out
 from studies.common.searches.ways import NEAR, WAYS
 
 # Accuracies that multipoles are counted at, %.
@@ -67,7 +68,7 @@ def reached(df, scene, quantity, target, *, any_shape=True, peers=False):
 
 def searches_of(df, scene, quantity):
     """Of each way the longest search on a scene, a dict each; a record is wide, and this is asked for every target."""
-    wanted = [name for name in ("scene", "way", "seconds", *COLUMNS[quantity]) if name in df]
+    wanted = [name for name in ("scene", "way", "seconds", "trail", *COLUMNS[quantity]) if name in df]
     return longest(df.loc[df["scene"] == scene, wanted]).to_dict("records")
 
 
@@ -87,7 +88,8 @@ def reaching(rows, quantity, target, *, any_shape=True, peers=False):
 def _cheapest(row, column, target):
     """Of all values that get to a target the cheapest, or None: what gets farther gets there, too."""
     told = json.loads(row[column]) if isinstance(row.get(column), str) else {}
-    there = [told[name] for name in told if float(name) <= target and isinstance(told[name], list)]
+    found = {float(name): each for name, each in told.items() if isinstance(each, list)}
+    there = [each for at, each in found.items() if at <= target and borne_out(row, column, at, each[0])]
     if not there:
         return None
     value, cpu_s, _, _, error, spread, _ = min(there, key=lambda each: each[1])

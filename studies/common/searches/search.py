@@ -1,7 +1,8 @@
 """One way's cheapest values of its knob for each accuracy: walked up, halved between neighbours, and run again.
 
 A value *reaches* a target if its error is within it, and so are those of all finer ones tried, two steps of the walk at
-least: an error that crosses zero wins nothing by it.
+least: an error that crosses zero wins nothing by it. Values that make the same unknowns and the same error (elements
+may be as small as curvature asks, whatever else is asked) are one step, however many were tried.
 """
 
 import math
@@ -19,8 +20,11 @@ MOST_S, MOST_MIB = 120.0, 8192.0
 FINER = 2
 # Runs at values that decide.
 RUNS = 3
-# Parts of a row's budget after which the walk, and halving, end.
+# Parts of a row's budget after which the walk, and halving, end; but of steps that a target cannot be reached without,
+# which may take all of it.
 WALK, HALVE = 0.5, 0.7
+# Digits to which two errors are the same: those that rows keep.
+DIGITS = 4
 # Steps of which the slope of errors over costs is taken, and the least that is believed.
 SLOPE, LEAST = 6, 0.15
 # Halves between two neighbours at most; steps of the walk at most.
@@ -42,6 +46,15 @@ class Point:
     def error_of(self, quantity):
         """Per cent; not-a-number if nobody asked."""
         return self.errors.get(quantity, math.nan)
+
+    def same_as(self, other):
+        """Whether it is another's over again, by all that was asked of both."""
+        both = self.errors.keys() & other.errors.keys()
+        return all(self.mark(quantity) == other.mark(quantity) for quantity in both)
+
+    def mark(self, quantity):
+        """What tells its solution from others, whatever the knob."""
+        return self.unknowns, f"{self.error_of(quantity):.{DIGITS}g}"
 
     def cost(self, quantity="conductivity"):
         """Processor seconds, median of the runs."""
@@ -86,7 +99,7 @@ def _walk(way, run, trail, budget, judged):
         if last is not None and growth(way, last.value, value) < GROWN:
             continue
         ahead = _next_cost(trail)
-        if ahead > MOST_S or trail.spent + ahead > WALK * budget:
+        if ahead > MOST_S or trail.spent + ahead > budget * (WALK if len(trail.points) > FINER else 1.0):
             trail.ended = "budget"
             return
         try:
@@ -97,10 +110,13 @@ def _walk(way, run, trail, budget, judged):
                 continue
             trail.ended = " ".join(str(error).split())[:120]
             return
-        point.walked = True
-        trail.add(point)
         if last is not None:
             number += _stride(point.cost() / last.cost()) - 1
+            if point.same_as(last):
+                # Nothing new: neither a step nor a cost of the way.
+                continue
+        point.walked = True
+        trail.add(point)
         last = point
         if max(each[2] for each in point.costs["all"]) > MOST_MIB / 2:
             trail.ended = "memory"
@@ -144,9 +160,18 @@ def reached(points, quantity, target):
 def reaching(points, quantity, target):
     """Places of all such points: a finer one may cost less."""
     missed = [place for place, point in enumerate(points) if not point.error_of(quantity) <= target]
-    walked = [place for place, point in enumerate(points) if point.walked]
+    walked = _steps(points, quantity)
     if len(walked) > FINER:
         yield from range(missed[-1] + 1 if missed else 0, walked[-FINER])
+
+
+def _steps(points, quantity):
+    """Places of the steps of the walk; of those that are the same the first."""
+    found: dict = {}
+    for place, point in enumerate(points):
+        if point.walked:
+            found.setdefault(point.mark(quantity), place)
+    return list(found.values())
 
 
 def foreseen(points, quantity, target):
@@ -192,6 +217,7 @@ def deciding(points, judged, among=reached):
 
 def _halve(way, run, trail, budget, judged):
     """Put values between neighbours of which one reaches a target and the other does not, cheap ones first."""
+    tried = set()
     for _ in range(HALVES):
         for place in sorted(deciding(trail.points, judged), reverse=True):
             if place == 0:
@@ -199,11 +225,14 @@ def _halve(way, run, trail, budget, judged):
             low, high = trail.points[place - 1], trail.points[place]
             value = between(way, low.value, high.value) if way.knob != "size" else between(way, high.value, low.value)
             near = high.cost() <= NEAR * low.cost()
-            if near or value is None or trail.spent + high.cost("all") > HALVE * budget:
+            if near or value is None or value in tried or trail.spent + high.cost("all") > HALVE * budget:
                 continue
+            tried.add(value)
             try:
                 point = run(value, QUANTITIES)
             except (MemoryError, TimeoutError, RuntimeError, ValueError):
+                continue
+            if point.same_as(low) or point.same_as(high):
                 continue
             point.walked = False
             trail.add(point)

@@ -83,9 +83,17 @@ WAYS = {
 
 
 def begun(way: Way, scene) -> Way:
-    """The same with more particles to begin with among thousands of bodies, where few cost as much as many."""
-    least = round(len(scene.inclusions) ** BEGIN)
-    return way._replace(first=max(way.first, least)) if way.knob == "particles" else way
+    """The same, begun where its knob begins to matter.
+
+    Among thousands of bodies few particles cost as much as many; elements are no longer than what is near them allows.
+    """
+    if way.knob == "particles":
+        return way._replace(first=max(way.first, round(len(scene.inclusions) ** BEGIN)))
+    if way.knob == "size" and not way.peer:
+        from studies.common.searches.elements import longest
+
+        return way._replace(first=min(way.first, longest(scene)))
+    return way
 
 
 def value_at(way: Way, number: float) -> float | int:

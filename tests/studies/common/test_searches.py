@@ -6,15 +6,19 @@ import math
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pandas as pd
 import pytest
 
+from studies.common.searches import means
 from studies.common.searches import search as search_module
+from studies.common.searches.elements import longest
 from studies.common.searches.in_time import IN_TIME, knobs_in_time
-from studies.common.searches.scenes import FOR_LAWS, HELD_BACK, SCENES, TUNED
+from studies.common.searches.scenes import FOR_LAWS, HELD_BACK, SCENES, TUNED, scene_of
 from studies.common.searches.search import Point, cheapest, reached, reaching, search
 from studies.common.searches.search import foreseen as foreseen_seconds
-from studies.common.searches.ways import NEAR, STEP, WAYS, between, growth, knobs_at, smooth, value_at
+from studies.common.searches.trails import points_of
+from studies.common.searches.ways import NEAR, STEP, WAYS, begun, between, growth, knobs_at, smooth, value_at
 from studies.frontier import asked
 from studies.frontier.cases import all_cases, foreseen
 
@@ -102,6 +106,100 @@ def test_all_that_is_finer_must_be_within_the_target_two_steps_of_the_walk_at_le
     assert reached(points([1, 1, 1, 1]), "temperature", 1.0) is None
 
 
+def elements(size):
+    """Unknowns of elements that no size above .1 makes longer, and whose number along an edge is whole."""
+    return round(1 / min(size, 0.1)) ** 3
+
+
+class Mesher(Machine):
+    """Runs of elements, whose errors and costs go with their number."""
+
+    def __init__(self):
+        self.asked = []
+
+    def __call__(self, size, wanted):
+        self.asked.append((size, wanted))
+        number = elements(size)
+        one = (1e-3 * number, 1e-3 * number, 1.0)
+        errors, costs = {"conductivity": 100 / number}, {"conductivity": [one], "all": [one]}
+        return Point(size, errors, costs, number, walked=True)
+
+
+def test_sizes_that_make_the_same_elements_are_one_step_and_cost_nothing():
+    mesher = Mesher()
+    trail = search(WAYS["fem"], mesher, budget=60.0, judged=only_conductivity)
+    made = [point.unknowns for point in trail.points]
+    assert len(set(made)) == len(made) >= 4 and elements(trail.points[0].value) == made[0] == 1000
+    # Steps are taken four at once there.
+    every = [size for size, wanted in mesher.asked if wanted == search_module.QUANTITIES]
+    alike = sum(elements(size) == 1000 for size in every)
+    assert alike <= 5 < sum(value_at(WAYS["fem"], number) >= 0.1 for number in range(20))
+    runs = sum(len(point.costs["all"]) * point.cost("all") for point in trail.points)
+    assert trail.spent == pytest.approx(runs)
+    # No value is tried twice between the same neighbours.
+    assert len(set(every)) == len(every)
+
+
+def test_three_steps_may_take_all_of_a_budget():
+    """Where the first costs much nothing is reached by half of it."""
+    dear = Machine(error=lambda n: 0.01, cost=lambda n: 10.0 + 1e-4 * n)
+    trail = search(DEM, dear, budget=35.0, judged=only_conductivity)
+    assert len(trail.points) == 3 and reached(trail.points, "conductivity", 1.0) == 0
+    assert len(search(DEM, dear, budget=28.0, judged=only_conductivity).points) == 2
+
+
+def same(errors, unknowns):
+    found = points(errors)
+    for point, number in zip(found, unknowns, strict=True):
+        point.unknowns = number
+    return found
+
+
+def test_one_mesh_run_three_times_is_no_two_finer_values():
+    assert reached(same([0.5] * 3, [7, 7, 7]), "flux", 1.0) is None
+    assert reached(same([0.5, 0.5, 0.4], [7, 7, 8]), "flux", 1.0) is None
+    # Neither the unknowns alone nor the error alone.
+    assert reached(same([0.5, 0.4, 0.3], [7, 7, 7]), "flux", 1.0) == 0
+    assert reached(same([0.5, 0.5, 0.5], [7, 8, 9]), "flux", 1.0) == 0
+    # The cheapest of those that are the same counts.
+    assert [*reaching(same([0.5, 0.5, 0.4, 0.3], [7, 7, 8, 9]), "flux", 1.0)] == [0, 1]
+
+
+def test_rows_that_took_one_mesh_for_several_are_judged_anew():
+    """Three runs of one mesh, and then of another two."""
+    trail = [[0.35, 7, 1, [0.5, 2.0, 3], None, None, None], [0.3, 7, 1, [0.5, 2.1, 1], None, None, None]]
+    told = json.dumps({"1": [0.35, 2.0, 2.0, 1.0, 0.5, 0.1, 3]})
+
+    def best(*more):
+        row = {"scene": "third", "way": "fem", "seconds": 4.0, "conductivity": told}
+        return means.best(pd.DataFrame([row | {"trail": json.dumps([*trail, *more])}]), "third", "conductivity", 1.0)
+
+    assert best([0.2, 7, 1, [0.5, 2.0, 1], None, None, None]) is None
+    finer = [[size, number, 1, [0.4, 3.0, 1], None, None, None] for size, number in ((0.1, 8), (0.05, 9))]
+    assert best(*finer).first.value == 0.35
+
+
+@pytest.mark.parametrize("name", ["third", "laminate", "image", "gyroid"])
+def test_elements_begin_where_they_heed_what_is_asked(name):
+    """Longer ones are the same, half as long ones are not."""
+    from references.fem.bricks import bricks
+    from references.mesh import make
+    from references.mesh.lattice import cubes
+
+    scene = scene_of(name)
+    way, edge = begun(WAYS["fem"], scene), scene.volume ** (1 / 3)
+    assert way.first == longest(scene) and 0.02 < way.first < WAYS["fem"].first
+    made = {
+        "image": lambda size: bricks(scene, size)[1].size,
+        # So coarse it is refused.
+        "gyroid": lambda size: cubes(np.array(scene.size), size).prod(),
+    }.get(name, lambda size: len(make(scene, size=size, order=1).points))
+    counts = [made(factor * way.first * edge) for factor in (2.0, 1.05, 0.5)]
+    # On a sphere one node more or less.
+    assert counts[0] == pytest.approx(counts[1], rel=3e-3) and counts[1] < 0.9 * counts[2]
+    assert begun(WAYS["fem"]._replace(first=0.01), scene).first == 0.01
+
+
 def test_what_a_target_would_take_is_read_off_the_fall_of_errors():
     """Halved with each step of 1.5: an eighth takes three steps more; what falls no more takes for ever."""
     seen = points([2.0**-n for n in range(8)])
@@ -157,12 +255,15 @@ def test_stored_rows_are_judged_as_their_trails_say(study, least):
     rows = pd.read_csv(Path(__file__).parents[3] / "results" / f"{study}.csv").dropna(subset=["trail"])
     assert len(rows) > least
     for row in rows.to_dict("records"):
-        tried = [_tried(*each) for each in json.loads(row["trail"])]
+        tried = points_of(row["trail"])
         for quantity in search_module.QUANTITIES:
             told = json.loads(row[quantity]) if isinstance(row.get(quantity), str) else {}
             for target, found in told.items():
                 place = cheapest(tried, quantity, float(target))
-                assert (place is None) is isinstance(found, str), (row["scene"], row["way"], quantity, target)
+                # Searches once took sizes that make the same elements for finer ones.
+                known = place is not None or _repeats(tried, quantity)
+                assert isinstance(found, list) <= known, (row["scene"], row["way"], quantity, target)
+                assert (place is not None) <= isinstance(found, list), (row["scene"], row["way"], quantity, target)
                 if place is not None:
                     value, seconds, _, _, error, _, runs = found
                     # Of two that cost the same to four digits the row knows more.
@@ -173,11 +274,10 @@ def test_stored_rows_are_judged_as_their_trails_say(study, least):
                     assert seconds == pytest.approx(point.cost(quantity), rel=1e-3)
 
 
-def _tried(value, unknowns, walked, *parts):
-    """A point of a stored trail, that ran so often at the median of its costs."""
-    there = {name: part for name, part in zip(search_module.QUANTITIES, parts, strict=True) if part}
-    errors = {name: math.nan if part[0] is None else part[0] for name, part in there.items()}
-    return Point(value, errors, {name: [(part[1], 0, 0)] * part[2] for name, part in there.items()}, unknowns, walked)
+def _repeats(points, quantity):
+    """Whether there are walked values that are others over again."""
+    marks = [point.mark(quantity) for point in points if point.walked]
+    return len(set(marks)) < len(marks)
 
 
 def test_voxels_divide_well():

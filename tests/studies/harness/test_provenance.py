@@ -5,7 +5,14 @@ from types import ModuleType
 
 import pytest
 
-from studies.harness import provenance
+from studies.harness import making, provenance
+
+
+def forget():
+    """What was seen of a repository, which no process of a row sees change."""
+    own = (provenance._head, provenance._differences, provenance._alike, provenance._works_alike)
+    for seen in (*own, making.paths_of, making._imported):
+        seen.cache_clear()
 
 
 @pytest.fixture
@@ -13,8 +20,7 @@ def repository(tmp_path, monkeypatch):
     """A repository of ours with one commit; returns what runs git in it and forgets what was seen."""
 
     def git(*words):
-        for seen in (provenance._head, provenance._differences, provenance._alike):
-            seen.cache_clear()
+        forget()
         who = ("-c", "user.name=a", "-c", "user.email=a@b")
         return subprocess.run(["git", *who, *words], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
 
@@ -25,8 +31,7 @@ def repository(tmp_path, monkeypatch):
     git("add", ".")
     git("commit", "-qm", "one")
     yield tmp_path, git
-    for seen in (provenance._head, provenance._differences, provenance._alike):
-        seen.cache_clear()
+    forget()
 
 
 def test_a_commit_and_what_differs_from_it(repository):
@@ -115,14 +120,90 @@ def test_files_that_come_or_go_do_work(repository, how):
 def test_outside_a_repository_the_source_tells(tmp_path, repository, monkeypatch):
     root, git = repository
     (root / ".git").rename(root / "gone")
-    git_less = [provenance._head, provenance._differences]
-    for seen in git_less:
-        seen.cache_clear()
+    forget()
     before = provenance.commit()
     assert before.startswith("+")
     (root / "demheat" / "dem.py").write_text("A = 2\n")
     provenance._differences.cache_clear()
     assert provenance.commit() != before
+
+
+STUDIES = {
+    "mine/__init__.py": "from studies.harness import cost\n\n\ndef plot(df):\n    from studies.mine import figure\n",
+    "mine/figure.py": "from studies.drawn import A\n",
+    "mine/tables.py": "A = 1\n",
+    "mine/rows.py": "def run():\n    import studies.other.rows\n",
+    "mine/known.csv": "1\n",
+    "other/__init__.py": "from studies.other.tables import A\n",
+    "other/rows.py": 'MODULES = {"a": "studies.named.rows"}\n',
+    "other/figure.py": "A = 1\n",
+    "other/tables.py": "from studies.told.rows import A\n",
+    "told/rows.py": "A = 1\n",
+    "named/rows.py": "A = 1\n",
+    "alone.py": "A = 1\n",
+    "drawn.py": "A = 1\n",
+    "common/block.py": "A = 1\n",
+    "paper/mine.csv": "1\n",
+    "harness/cost.py": "A = 1\n",
+    "harness/report.py": "from studies.alone import A\n",
+}
+# Which of these another study's rows, or a folder's own, do not depend on.
+OF_MINE = ("mine/__init__.py", "mine/rows.py", "mine/known.csv", "other/__init__.py", "other/rows.py")
+OF_MINE += ("other/tables.py", "told/rows.py", "named/rows.py", "common/block.py", "paper/mine.csv", "harness/cost.py")
+
+
+@pytest.fixture
+def studied(repository):
+    """The same with studies, at a second commit."""
+    root, git = repository
+    for name, text in STUDIES.items():
+        path = root / "studies" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    git("add", ".")
+    git("commit", "-qm", "studies")
+    return root, git
+
+
+@pytest.mark.parametrize("committed", [True, False])
+@pytest.mark.parametrize("name", STUDIES)
+def test_rows_are_of_other_code_where_that_makes_them(studied, name, committed):
+    root, git = studied
+    files = {"mine": root / "studies" / "mine" / "__init__.py", "alone": root / "studies" / "alone.py"}
+    first = {each: provenance.commit(file) for each, file in files.items()}
+    assert set(first.values()) == {provenance.commit()}
+    path = root / "studies" / name
+    path.write_text(f"{path.read_text()}B = 2\n")
+    git(*(("commit", "-qam", "two") if committed else ("status",)))
+    moved = {"mine": name in OF_MINE, "alone": name.startswith(("alone", "common", "paper", "harness/cost"))}
+    for each, file in files.items():
+        assert provenance.of_this_code(first[each], file) is not moved[each]
+        assert ("+" in provenance.commit(file)) is (moved[each] and not committed)
+    # Where nobody says which study, any may be.
+    assert not provenance.of_this_code(first["mine"])
+
+
+@pytest.mark.parametrize("name", ["mine/new.py", "common/new.csv", "alone/new.py"])
+def test_files_that_come_count_by_the_same_rule(studied, name):
+    root, git = studied
+    file = root / "studies" / "mine" / "__init__.py"
+    first, path = provenance.commit(file), root / "studies" / name
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("A = 1\n")
+    git("status")
+    assert provenance.of_this_code(first, file) is name.startswith("alone")
+
+
+def test_outside_a_repository_the_same_files_tell(studied):
+    root, _ = studied
+    (root / ".git").rename(root / "gone")
+    file = root / "studies" / "mine" / "__init__.py"
+    found = set()
+    for name in ("mine/figure.py", "alone.py", "harness/report.py", "other/tables.py", "mine/rows.py"):
+        forget()
+        (root / "studies" / name).write_text("B = 2\n")
+        found.add((name in OF_MINE, provenance.commit(file)))
+    assert len(found) == 3 and len({commit for own, commit in found if not own}) == 1
 
 
 def test_a_study_of_somebody_elses_counts_by_its_bytes(repository, tmp_path):

@@ -2,6 +2,7 @@
 
 import pytest
 
+from demheat.runtime.machine import machine
 from studies.__main__ import main
 from studies.harness import accept as acceptance
 from studies.harness import provenance, replay, runner, store
@@ -136,8 +137,8 @@ def test_an_accepted_change_gives_moved_rows_new_values_and_leaves_costs_and_the
     for name, row in after.items():
         kept = ("cpu_s", "wall_s", "commit", "when", "noise")
         assert {each: row[each] for each in kept} == {each: before[name][each] for each in kept}
-        new = provenance.commit(old.file) if name.startswith("plain") else ""
-        assert row["values_commit"] == new
+        new = (provenance.commit(old.file), machine()) if name.startswith("plain") else ("", "")
+        assert (row["values_commit"], row["values_machine"]) == new
     # What is accepted is this code's.
     del old.replayed[:]
     assert ran(old, "accept") == 0 and old.replayed == []

@@ -93,12 +93,32 @@ def test_verdicts_of_hard_cases_are_compared_without_their_words():
         ("fem", {}, 5e-9, 5e-8),
         ("dem", {"versions": "others"}, 4e-3, 2e-2),
         ("dem", {"machine": "", "versions": ""}, 4e-3, 2e-2),
+        # Values that are not of the machine of the costs.
+        ("dem", {"machine": "another", "values_commit": "1", "values_machine": machine()}, 5e-9, 5e-8),
+        ("dem", {"values_commit": "1", "values_machine": "another"}, 5e-5, 5e-4),
+        ("dem", {"values_commit": "1", "values_machine": ""}, 5e-5, 5e-4),
+        ("dem", {"values_commit": "1"}, 5e-5, 5e-4),
+        ("dem", {"values_commit": "", "values_machine": ""}, 5e-9, 5e-8),
     ],
 )
 def test_a_row_from_elsewhere_is_held_to_less(method, origin, near, far):
     for value, differs in ((1.0 + near, False), (1.0 + far, True)):
         row, stored = {"status": "ok", "k_ratio": value}, STORED | {"k_ratio": "1.0"} | origin
         assert bool(moved("mine", study(), CASE | {"method": method}, stored, row)) == differs
+
+
+@pytest.mark.parametrize(
+    ("origin", "stored", "found", "differs"),
+    [
+        ({"machine": "another"}, "192", 180, False),
+        ({"versions": "others"}, "252", 243, False),
+        ({"machine": "another"}, "192", 170, True),
+        ({}, "192", 180, True),
+    ],
+)
+@pytest.mark.parametrize("column", ["iterations", "fft_iterations"])
+def test_iterations_elsewhere_may_end_a_tenth_earlier(column, origin, stored, found, differs):
+    assert columns_moved(column, stored, found, **origin) == [column] * differs
 
 
 @pytest.mark.parametrize(("upper", "differs"), [(1.0019, False), (1.0011, True)])
