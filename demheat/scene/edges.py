@@ -8,7 +8,8 @@ upwards, what parts them, as links between middles of voxels, downwards: to 98 a
 along a board of contrast 1000), and twice as many voxels change that by a tenth. So such edges have no answer here.
 
 The edge of a box or the rim of a cylinder alone has a power from 2/3 on, so that errors of second order fall with the
-power 4/3 at contrasts far from 1. An inclined plane makes wedges with a wall and its image, with powers from 1/2 on.
+power 4/3 at contrasts far from 1. An inclined plane makes wedges with a wall and its image, with powers from 1/2 on,
+and so does a cylinder that goes through a wall at an angle.
 """
 
 import numpy as np
@@ -17,7 +18,7 @@ from demheat.scene.shapes.base import BESIDE
 
 # Powers of the size below which methods have no answer, and where there is no edge.
 SLOWEST, SMOOTH = 0.5, 2.0
-# Cosine of the angle from which on a plane and a wall are not upright, nor parallel.
+# Cosine of the angle from which on a surface and a wall are not upright, nor parallel.
 MEETS = 1e-9
 # Of angles that are told apart, in radians: they move powers by no more than the steps in which these are tried.
 DIGITS = 3
@@ -28,12 +29,12 @@ TRIED, LEAST = np.arange(1, 2001) / 2000, 1e-12
 def edge_order(scene) -> float:
     """The power of their size with which errors of elements fall beside the worst edge of the scene, at most 2.
 
-    Edges are those that shapes tell, and where inclined planes without end meet walls.
+    Edges are those that shapes tell, and where inclined planes and cylinders go through walls.
     """
     if scene.anisotropic:
         return SMOOTH
     parts, k = [part for shape in scene.inclusions for part in shape.parts], scene.mean_conductivities
-    return min((2 * each for each in (*_of_shapes(scene, parts, k), *_of_planes(parts, k))), default=SMOOTH)
+    return min((2 * each for each in (*_of_shapes(scene, parts, k), *_of_walls(scene, parts, k))), default=SMOOTH)
 
 
 def _of_shapes(scene, parts, k):
@@ -53,14 +54,24 @@ def _of_shapes(scene, parts, k):
     return [power(each[:4], each[4:]) for each in found]
 
 
-def _of_planes(parts, k):
-    """Powers where planes meet walls, which make wedges of them, at an angle of theirs and at its supplement."""
-    for plane in (part for part in parts if part.planes() is not None and not part.bounded):
-        along = np.abs(plane.planes()[0])
+def leaning(scene) -> np.ndarray:
+    """Whether each inclusion goes through a wall at an angle, (number of inclusions,) bool array."""
+    return np.array([any(len(_leans(part, scene)) for part in shape.parts) for shape in scene.inclusions], bool)
+
+
+def _leans(part, scene):
+    """Cosines between its normals and walls that it goes through, neither upright nor parallel."""
+    leans = np.zeros(3) if scene.periodic else part.leans(scene.size)
+    return leans[(leans > MEETS) & (leans < 1 - MEETS)]
+
+
+def _of_walls(scene, parts, k):
+    """Powers where what leans meets walls, which make wedges of it, at an angle of its own and at its supplement."""
+    for part in parts:
         # Walls are mirrors: the wedge of an angle is one of twice that.
-        for wedge in 2 * np.arccos(along[(along > MEETS) & (along < 1 - MEETS)]):
+        for wedge in 2 * np.arccos(_leans(part, scene)):
             angles = np.array([wedge, 2 * np.pi - wedge])
-            yield from (power([plane.material.mean_conductivity, k[0]], each) for each in (angles, angles[::-1]))
+            yield from (power([part.material.mean_conductivity, k[0]], each) for each in (angles, angles[::-1]))
 
 
 def power(conductivities, angles=(np.pi / 2,) * 4) -> float:

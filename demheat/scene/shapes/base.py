@@ -230,6 +230,10 @@ class Shape(ABC):
         """
         return np.empty((0, 4, 3))
 
+    def leans(self, size: Sequence[float]) -> np.ndarray:
+        """Largest cosine between its normals and those of the walls that it goes through, (3,) float array."""
+        return np.zeros(3)
+
     def wedges(self, size: Sequence[float]) -> np.ndarray:
         """Angles of the wedges around its edges in which the points of `edges` lie, in turn, (n, 4) float array."""
         return np.full(self.edges(size).shape[:2], 0.5 * np.pi)

@@ -126,14 +126,28 @@ class Cylinder(Solid):
 
     def volume_in(self, size: Sequence[float], *, periodic: bool) -> float:
         """Volume of the part in a box, m3; see `Shape.volume_in`."""
-        if self.length is not None:
+        if periodic and self.length is None:
+            return math.pi * self.radius**2 * size[int(np.argmax(np.abs(self.axis)))]
+        through = (
+            None if periodic else next((axis for axis in np.flatnonzero(self.axis) if self._passes(axis, size)), None)
+        )
+        if through is None:
             return super().volume_in(size, periodic=periodic)
-        low, high = self.bounds()
-        ends, slack = np.isfinite(low), TOUCH * max(size)
-        inside = np.all((low[ends] > -slack) & (high[ends] < np.array(size)[ends] + slack))
-        if ends.sum() != 2 or not (periodic or inside):
-            raise NotImplementedError(f"no closed form for the volume of a {self.kind} at {self.center} cut by a wall")
-        return math.pi * self.radius**2 * size[int(np.flatnonzero(~ends)[0])]
+        return math.pi * self.radius**2 * size[through] / abs(self.axis[through])
+
+    def _passes(self, axis, size):
+        """Whether it goes through both walls of an axis, with its ends beyond them, and meets no other."""
+        along = abs(self.axis[axis])
+        slope, slack = np.array(self.axis) / self.axis[axis], TOUCH * max(size)
+        # Of a flat end what is nearest to the middle.
+        reach = math.inf if self.length is None else 0.5 * self.length * along - self.radius * math.sqrt(1 - along**2)
+        ends = np.array([-self.center[axis], size[axis] - self.center[axis]])
+        if np.any(np.abs(ends) > reach + slack) or ends[0] > 0 or ends[1] < 0:
+            return False
+        tips = np.delete(self.center + np.outer(ends, slope), axis, axis=1)
+        # Half of what a plane across that axis cuts out of it.
+        half, sides = np.delete(self.radius * np.hypot(1.0, slope), axis), np.delete(np.array(size), axis)
+        return bool(np.all((tips - half > -slack) & (tips + half < sides + slack)))
 
     def check_fit(self, name: str, size: Sequence[float], *, periodic: bool) -> None:
         """Raise ValueError in a periodic cell that does not repeat it; see `Shape.check_fit`."""
@@ -156,6 +170,11 @@ class Cylinder(Solid):
         across = (self.radius + beside * np.array([-1, -1, 1, 1]))[None, :, None] * outward[:, None]
         up = (0.5 * self.length + beside * np.array([-1, 1, 1, -1]))[:, None] * axis
         return np.array(self.center) + np.concatenate([across + up, across - up])
+
+    def leans(self, size: Sequence[float]) -> np.ndarray:
+        """How far it leans against the walls that it goes through; see `Shape.leans`."""
+        (low, high), u = self.bounds(), np.abs(self.axis)
+        return np.where((u > 0) & ((low < 0) | (high > size)), np.sqrt(np.maximum(1 - u * u, 0.0)), 0.0)
 
     @property
     def faces(self) -> list[Shape]:
@@ -192,26 +211,34 @@ class Cylinder(Solid):
 
         The volume of what tangent planes enclose is that of the mean of 1/cos^2 of the angle to the nearest point.
         """
-        from scipy.spatial import cKDTree
-
         axis = np.array(self.axis)
         around = np.abs(normals @ axis) < 0.5
         if not around.any():
             return points
         own = points[around] - np.array(self.center)
+        moved, inner = points.copy(), self._inner(own, normals[around], room)
         height = own @ axis
-        count = 40 * len(own)
-        turn = np.pi * (1 + np.sqrt(5.0)) * np.arange(count)
-        frame = across(axis)
+        moved[around] = np.array(self.center) + np.outer(height, axis) + inner * self.radius * normals[around]
+        return moved
+
+    def _inner(self, own, normals, room):
+        """Distance of the sides of that prism from the axis over the radius, by points offset from the centre."""
+        from scipy.spatial import cKDTree
+
+        axis, frame, count = np.array(self.axis), across(self.axis), 40 * len(own)
+        turn, height = np.pi * (1 + np.sqrt(5.0)) * np.arange(count), own @ axis
         # Between the outermost rows: beyond them no point is nearer than those.
         where = height.min() + (np.arange(count) + 0.5) / count * np.ptp(height)
         out = np.outer(np.cos(turn), frame[0]) + np.outer(np.sin(turn), frame[1])
-        _, nearest = cKDTree(own).query(self.radius * out + np.outer(where, axis))
-        cosine = np.maximum(np.einsum("ij,ij->i", out, normals[around][nearest]), 0.25)
-        inner = float(np.mean(cosine**-2.0) ** -0.5)
-        moved = points.copy()
-        moved[around] = np.array(self.center) + np.outer(height, axis) + inner * self.radius * normals[around]
-        return moved
+        beside = self.radius * out + np.outer(where, axis)
+        # Beyond a wall, which cuts an inclined one obliquely, there are no points.
+        places = np.array(self.center) + beside
+        here = np.all((places > 0) & (places < room.size), axis=1) | room.periodic
+        if not here.any():
+            return 1.0
+        _, nearest = cKDTree(own).query(beside[here])
+        cosine = np.maximum(np.einsum("ij,ij->i", out[here], normals[nearest]), 0.25)
+        return float(np.mean(cosine**-2.0) ** -0.5)
 
     def cad(self, occ, box: np.ndarray, scale: float) -> int:
         """A cylinder of OpenCASCADE; see `Shape.cad`."""

@@ -113,6 +113,10 @@ class HalfSpace(Solid):
         """Its one plane; see `Shape.planes`."""
         return np.array([self.outward]), np.array([np.dot(self.point, self.outward)])
 
+    def leans(self, size: Sequence[float]) -> np.ndarray:
+        """How far its plane leans against walls; see `Shape.leans`."""
+        return np.abs(self.outward)
+
     def check_fit(self, name: str, size: Sequence[float], *, periodic: bool) -> None:
         """Raise ValueError in a periodic cell; see `Shape.check_fit`."""
         if periodic:

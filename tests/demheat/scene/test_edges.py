@@ -150,3 +150,11 @@ def test_intervals_of_boards_know_how_slowly_errors_fall(contrast, rule):
     # With first order instead, the interval of links at 24 is half as wide as the error.
     error = fft.solve(board(contrast), voxels=24, rule=rule).error
     assert error.lower <= math.sqrt(contrast) <= error.upper
+
+
+@pytest.mark.parametrize("length", [None, 2.0])
+def test_a_cylinder_that_goes_through_a_wall_at_an_angle_has_the_edges_of_a_plane_there(length):
+    cell, good = {"size": (1.0, 1.0, 1.0), "matrix": Material(1.0), "walls": {"x-": 0.0, "x+": 1.0}}, Material(1e9)
+    fibre = Cylinder((0.5,) * 3, 0.1, (1, 1, 0), good, length=length)
+    plane = HalfSpace((0.5,) * 3, (1, 1, 0), good)
+    assert edge_order(Scene(inclusions=[fibre], **cell)) == edge_order(Scene(inclusions=[plane], **cell)) < 1.4

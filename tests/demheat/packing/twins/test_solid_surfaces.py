@@ -85,6 +85,15 @@ def test_conforming_packings_have_the_right_fraction(name):
     assert_allclose(field.fractions[1], share, rtol=5e-3)
 
 
+@pytest.mark.parametrize("length", [None, 1.6])
+def test_planes_of_a_cylinder_that_walls_cut_obliquely_keep_its_volume(length):
+    """Between walls there are no points beyond them: planes that count on some there hold .3 % too little."""
+    rod = Cylinder((0.5,) * 3, 0.18, (0.35, 1.0, 0.2), OTHER, length=length)
+    body = Scene((1.0, 1.0, 1.0), MATRIX, [rod], walls={"y-": 0.0, "y+": 1.0})
+    # Of cells at walls, which their surface crosses: 1.4e-4 is found.
+    assert_allclose(solve(body, particles=4000).fractions[1], rod.volume_in(body.size, periodic=False), rtol=5e-4)
+
+
 def test_gaps_between_fibres_have_more_twins():
     wide, close = (
         Scene(

@@ -107,6 +107,16 @@ def test_volumes_are_those_of_points(shape):
         replace(moved, center=(0.1, 0.1, 1.9)).volume_in(box, periodic=False)
 
 
+@pytest.mark.parametrize("length", [None, 2.6])
+def test_what_goes_through_two_walls_at_an_angle_has_the_volume_of_an_oblique_cylinder(length):
+    rod = Cylinder((0.5, 0.4, 0.5), 0.15, (0.3, 1.0, -0.2), OTHER, length=length)
+    assert_allclose(rod.volume_in((1, 1, 1), periodic=False), math.pi * 0.15**2 * math.sqrt(1.13))
+    # Too short, off to a side, and off beyond a wall.
+    for other in ({"length": 1.1}, {"axis": (0.7, 1.0, 0.0)}, {"center": (0.15, 0.4, 0.5)}):
+        with pytest.raises(NotImplementedError, match="cut by a wall"):
+            replace(rod, **other).volume_in((1, 1, 1), periodic=False)
+
+
 @pytest.mark.parametrize("shape", [*ONCE, RING], ids=IDS)
 @pytest.mark.parametrize("order", [(2, 0, 1), (1, 0, 2)])
 def test_turned_axes(shape, order, points):
