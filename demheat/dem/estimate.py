@@ -166,7 +166,7 @@ def _fine(field, number, law):
 
 def _spread_out(field, across, diameter):
     """Part of what each inclusion makes that is off at walls, and as points are spread over its surface by samples."""
-    bodies = field.scene.inclusions
+    bodies, at_walls = field.scene.inclusions, leaning(field.scene) * LEANS / across
     spread = np.array([each.finding != "form" for each in bodies])
     kinks = np.array([each.kinks for each in bodies])
     # A function may have limits far beyond its body: that is no wider than a ball that holds as much.
@@ -174,7 +174,7 @@ def _spread_out(field, across, diameter):
     across = np.maximum(np.minimum(across, balls / diameter), 1e-3)
     plain = SPREAD_OUT / across**2 + KINKED * kinks / across
     grooved = np.where([_grooved(each) for each in bodies], GROOVES / across**GROOVED, 0.0)
-    return np.maximum(np.where(spread, np.maximum(plain, grooved), 0.0), leaning(field.scene) * LEANS / across)
+    return np.maximum(np.where(spread, np.maximum(plain, grooved), 0.0), at_walls)
 
 
 def _grooved(body):
