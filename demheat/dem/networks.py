@@ -22,7 +22,7 @@ from demheat.runtime.limits import check_memory
 from demheat.runtime.progress import stage
 from demheat.scene import Scene, check_scene
 from demheat.scene.narrows import STRONG, narrows
-from demheat.scene.resistances import between
+from demheat.scene.resistances import on_facets
 from demheat.scene.volumes import coats, extents
 
 # Layers thinner than so many particle diameters are seen by chance where facets do not lie on interfaces. Errors of a
@@ -145,7 +145,7 @@ def _connected(scene, law, packing, facets, tessellation_s, perfect=None):
         if not law.conforming:
             _warn_of_thin_phases(scene, phase, 2.0 * float(packing.radii.mean()))
             _warn_of_narrow_gaps(scene, 2.0 * float(packing.radii.mean()))
-        how = {"rule": law.interface, "cells": law.cells, "resistance": between(scene)}
+        how = {"rule": law.interface, "cells": law.cells, "resistance": on_facets(scene)}
         network = connect(packing, facets, phase, scene.conductivities, **how)
     spent = {"tessellation_s": tessellation_s, "network_s": time.perf_counter() - begun}
     said = {"law": law.name, "calibration": factor, "packing": packing.provenance}

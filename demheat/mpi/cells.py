@@ -21,7 +21,7 @@ from demheat.packing.cache import relaxed, replica, replicated
 from demheat.packing.tile import tiled
 from demheat.packing.twins.conforming import Part, conform
 from demheat.scene import Scene
-from demheat.scene.resistances import between
+from demheat.scene.resistances import on_facets
 
 # Columns of Facets for walls.
 WALLS = ("wall_particle", "wall_side", "wall_area", "wall_distance", "wall_normal")
@@ -86,7 +86,7 @@ def cells_of(scene: Scene, law: Laguerre, packing: Packing, slabs: Slabs, comm) 
     seen, facets = drop_empty_cells(seen, facets)
     facets = _without_cuts(facets, own, slabs)
     phase = scene.phase_at(wrap(seen.centers, seen.size, np.broadcast_to(scene.periodic, 3)))
-    rule = {"rule": law.interface, "cells": law.cells, "resistance": between(scene)}
+    rule = {"rule": law.interface, "cells": law.cells, "resistance": on_facets(scene)}
     network = connect(seen, facets, phase, scene.conductivities, **rule)
     filled = comm.allreduce(float(network.volumes[:own].sum())) / scene.volume - 1.0
     if abs(filled) > DEFECT:

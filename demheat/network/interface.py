@@ -3,7 +3,7 @@
 import numpy as np
 
 from demheat.laws import RULES
-from demheat.network.base import FEW, Network, branches
+from demheat.network.base import FEW, Network, branches, image_shifts, row_numbers
 from demheat.network.links_kernels import Places, lengths
 from demheat.runtime.threads import shared_out
 
@@ -27,17 +27,19 @@ def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
 def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=True, resistance=None) -> Network:
     """Conductances H = k S / d of facets between particles of given phases.
 
-    Where the interface has a resistance R it is in series, 1/H = d/(k S) + R/S: exact where the facet lies on it.
+    Where the interface has a resistance R it is in series, 1/H = d/(k S) + R/S: exact where the facet lies on it. Of
+    where facets are and how they lie it may be told, as those that lean are less surface than their area.
     """
     conductivity = conductivities[phase]
     wall = conductivity[facets.wall_particle] * facets.wall_area / facets.wall_distance
+    conductance = _conductances(packing, facets, conductivity, rule)
     return Network(
         centers=packing.centers,
         size=packing.size,
         indptr=facets.indptr,
         indices=facets.indices,
         image=facets.image,
-        conductance=_resisted(_conductances(packing, facets, conductivity, rule), facets, phase, resistance),
+        conductance=_resisted(conductance, packing, facets, phase, resistance),
         wall_particle=facets.wall_particle,
         wall_side=facets.wall_side,
         wall_conductance=wall,
@@ -70,15 +72,24 @@ def _conductances(packing, facets, conductivity, rule):
     return conductance
 
 
-def _resisted(conductance, facets, phase, resistance):
+def _resisted(conductance, packing, facets, phase, resistance):
     """The conductances with what interfaces resist in series, in place."""
     if resistance is None:
         return conductance
     here, there = np.repeat(phase, np.diff(facets.indptr)), phase[facets.indices]
     unlike = np.flatnonzero((here != there) & (facets.area > 0))
-    found = conductance[unlike]
-    conductance[unlike] = found / (1.0 + found * resistance(here[unlike], there[unlike]) / facets.area[unlike])
+    found, met = conductance[unlike], resistance(here[unlike], there[unlike], *_feet(packing, facets, unlike))
+    conductance[unlike] = found / (1.0 + found * met / facets.area[unlike])
     return conductance
+
+
+def _feet(packing, facets, links):
+    """Where links meet their facets, and unit vectors along them, two (k, 3) float arrays."""
+    row = row_numbers(facets.indptr)[links]
+    here, there = packing.centers[row], packing.centers[facets.indices[links]]
+    way = there + image_shifts(facets.image[links], packing.size) - here
+    way /= np.linalg.norm(way, axis=1)[:, None]
+    return here + facets.distance[links][:, None] * way, way
 
 
 def _lengths(packing, facets):

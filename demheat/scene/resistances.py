@@ -8,6 +8,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+# Of a facet that stands upright on a surface: nothing passes it, and nothing is divided by 0.
+LEAST = 1e-9
+
 
 def between(scene) -> Callable[[np.ndarray, np.ndarray], np.ndarray] | None:
     """Resistance between phases that meet."""
@@ -23,6 +26,41 @@ def between(scene) -> Callable[[np.ndarray, np.ndarray], np.ndarray] | None:
         return np.array([own[list(each)].sum() for each in crossed])[place]
 
     return resistance
+
+
+def on_facets(scene) -> Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray] | None:
+    """Resistance between phases that meet on facets, given by a point and a normal, over the surface that each is.
+
+    Facets beside each other end in steps where they do not meet. A step leans, and is as much surface as it covers: its
+    area times the cosine between its normal and the surface's. By areas alone there would be too much surface, which
+    falls with the distance between twins, not with its square. For heat along the normal of a plane it is exact.
+    """
+    own = scene.resistances
+    if not own.any():
+        return None
+    parents = scene.parents()
+
+    def resistance(here, there, points, normals):
+        found = np.zeros(len(here))
+        pairs, place = np.unique(np.asarray(here, np.int64) * len(own) + there, return_inverse=True)
+        ends = np.cumsum(np.bincount(place, minlength=len(pairs)))[:-1]
+        for pair, facets in zip(pairs.tolist(), np.split(np.argsort(place, kind="stable"), ends), strict=False):
+            one, other = (_around(phase, parents) for phase in divmod(pair, len(own)))
+            for phase in (each for each in one ^ other if own[each] > 0):
+                shape = scene.inclusions[phase - 1]
+                found[facets] += own[phase] / _covers(shape, points[facets], normals[facets], scene.period)
+        return found
+
+    return resistance
+
+
+def _covers(shape, points, normals, period):
+    """How much of a shape's surface facets at points are, over their area, (n,) float array."""
+    # On spheres facets are a polyhedron, on planes they lie in these: no steps.
+    if shape.fills_ball or shape.flat:
+        return np.ones(len(points))
+    cosine = np.einsum("ij,ij->i", shape.normal(points, period=period), normals)
+    return np.maximum(np.abs(cosine), LEAST)
 
 
 def joined(scene) -> np.ndarray:

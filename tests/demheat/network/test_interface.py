@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat.network.base import Facets
 from demheat.network.interface import connect, link_conductivity
@@ -56,7 +56,14 @@ def test_parts_of_a_link_are_those_on_either_side_of_its_facet(resistance):
         wall_distance=np.array([0.2, 0.4]),
         volumes=np.array([0.3, 0.7]),
     )
-    between = (lambda here, there: np.full(len(here), resistance)) if resistance else None
-    network = connect(packing, facets, np.array([0, 1]), np.array([2.0, 10.0]), resistance=between)
+
+    def met(here, there, points, normals):
+        assert_array_equal([here, there], [[0, 1], [1, 0]])
+        assert_allclose(points, [[0.3, 0.5, 0.5]] * 2, rtol=1e-14)  # rounding
+        assert_allclose(normals, [[1, 0, 0], [-1, 0, 0]], atol=1e-14)
+        return np.full(len(here), resistance)
+
+    how = {"resistance": met} if resistance else {}
+    network = connect(packing, facets, np.array([0, 1]), np.array([2.0, 10.0]), **how)
     assert_allclose(network.conductance, 0.25 / (0.1 / 2.0 + 0.3 / 10.0 + resistance), rtol=1e-14)
     assert_allclose(network.wall_conductance, [0.25 * 2.0 / 0.2, 0.25 * 10.0 / 0.4], rtol=1e-14)

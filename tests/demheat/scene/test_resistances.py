@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
-from demheat import Layer, Material, Scene, Sphere, recommend
+from demheat import Box, Layer, Material, Scene, Sphere, recommend
 from demheat.scene.negligible import negligible
-from demheat.scene.resistances import between, joined
+from demheat.scene.resistances import between, joined, on_facets
 from demheat.scene.symmetry import alike_axes, mirrors, reduced
 
 GOOD = Material(30.0)
@@ -55,6 +55,29 @@ def test_heat_meets_all_surfaces_between_two_phases():
     assert_array_equal(joined(scene), [0, 1, 2, 3, 4])
     assert_array_equal(joined(cell(nest[0], replace(nest[1], resistance=0.0), nest[2])), [0, 1, 1, 3])
     assert between(cell(ball(0.5, 0.5, 0.5))) is None
+
+
+def test_a_facet_that_leans_is_as_much_surface_as_it_covers():
+    # Phase 1 holds 2; facets on a face of the box, beyond one of the cell, of which two lean by 60 degrees.
+    block = Box((0.9, 0.5, 0.5), (0.4, 0.4, 0.4), GOOD, resistance=3.0)
+    met = on_facets(cell(block, ball(0.9, 0.5, 0.5, 50.0)))
+    lean = np.array([[1.0, 0.0, 0.0], [0.5, np.sqrt(0.75), 0.0], [-0.5, 0.0, np.sqrt(0.75)]])
+    outside, points = np.zeros(3, int), np.array([[0.1, 0.5, 0.5], [1.1, 0.5, 0.5], [0.1, 0.45, 0.5]])
+    assert_allclose(met(outside, outside + 1, points, lean), [3.0, 6.0, 6.0], rtol=1e-12)  # rounding
+    assert_allclose(met(outside + 1, outside, points, -lean), [3.0, 6.0, 6.0], rtol=1e-12)
+    # Of two surfaces between two phases each counts by its own normal; facets of spheres have no steps.
+    assert_allclose(met(outside, outside + 2, points, lean), [53.0, 56.0, 56.0], rtol=1e-12)
+    assert_array_equal(met(outside + 1, outside + 2, points, lean), [50.0] * 3)
+    upright = met(outside, outside + 1, points, np.tile([0.0, 1.0, 0.0], (3, 1)))
+    assert np.all(upright > 1e8) and np.all(np.isfinite(upright))
+    assert on_facets(cell(ball(0.5, 0.5, 0.5))) is None
+
+
+def test_on_spheres_and_layers_facets_are_all_surface():
+    scene = cell(ball(0.3, 0.5, 0.5, 2.0), layer(0.6, 0.9, 0.5))
+    here, there, points = np.array([0, 2, 1]), np.array([1, 0, 2]), np.full((3, 3), 0.4)
+    found = on_facets(scene)(here, there, points, np.eye(3))
+    assert_array_equal(found, between(scene)(here, there))
 
 
 def test_what_does_not_say_that_it_can_refuses_it():
