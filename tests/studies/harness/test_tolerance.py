@@ -121,6 +121,15 @@ def test_iterations_elsewhere_may_end_a_tenth_earlier(column, origin, stored, fo
     assert columns_moved(column, stored, found, **origin) == [column] * differs
 
 
+@pytest.mark.parametrize(("found", "differs"), [(-0.01881069682599934, False), (-0.0172, True)])
+def test_errors_of_what_iterates_elsewhere_may_be_a_thousandth_of_a_per_cent_off(found, differs):
+    stored = "-0.01902206722299571"
+    assert columns_moved("error_percent", stored, found, machine="another") == ["error_percent"] * differs
+    assert columns_moved("error_percent", stored, found) == ["error_percent"]
+    # In another unit that might be much.
+    assert columns_moved("error", stored, found, machine="another") == ["error"]
+
+
 @pytest.mark.parametrize(("upper", "differs"), [(1.0019, False), (1.0011, True)])
 def test_an_interval_is_as_wide_as_it_was(upper, differs):
     """From another machine its ends may be anywhere in it."""
