@@ -20,10 +20,10 @@ def between(scene) -> Callable[[np.ndarray, np.ndarray], np.ndarray] | None:
     parents = scene.parents()
 
     def resistance(here, there):
-        pairs, place = np.unique(np.asarray(here, np.int64) * len(own) + there, return_inverse=True)
-        # Surfaces around both are not crossed.
-        crossed = [_around(a, parents) ^ _around(b, parents) for a, b in (divmod(p, len(own)) for p in pairs.tolist())]
-        return np.array([own[list(each)].sum() for each in crossed])[place]
+        found = np.zeros(len(here))
+        for crossed, pairs in _crossed(here, there, parents):
+            found[pairs] = own[crossed].sum()
+        return found
 
     return resistance
 
@@ -42,16 +42,22 @@ def on_facets(scene) -> Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray
 
     def resistance(here, there, points, normals):
         found = np.zeros(len(here))
-        pairs, place = np.unique(np.asarray(here, np.int64) * len(own) + there, return_inverse=True)
-        ends = np.cumsum(np.bincount(place, minlength=len(pairs)))[:-1]
-        for pair, facets in zip(pairs.tolist(), np.split(np.argsort(place, kind="stable"), ends), strict=False):
-            one, other = (_around(phase, parents) for phase in divmod(pair, len(own)))
-            for phase in (each for each in one ^ other if own[each] > 0):
+        for crossed, facets in _crossed(here, there, parents):
+            for phase in (each for each in crossed if own[each] > 0):
                 shape = scene.inclusions[phase - 1]
                 found[facets] += own[phase] / _covers(shape, points[facets], normals[facets], scene.period)
         return found
 
     return resistance
+
+
+def _crossed(here, there, parents):
+    """Of any two phases that meet those whose surfaces part them, and where the two do; surfaces around both do not."""
+    pairs, place = np.unique(np.asarray(here, np.int64) * len(parents) + there, return_inverse=True)
+    ends = np.cumsum(np.bincount(place, minlength=len(pairs)))[:-1]
+    for pair, places in zip(pairs.tolist(), np.split(np.argsort(place, kind="stable"), ends), strict=False):
+        one, other = (_around(phase, parents) for phase in divmod(pair, len(parents)))
+        yield list(one ^ other), places
 
 
 def _covers(shape, points, normals, period):

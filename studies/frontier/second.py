@@ -70,15 +70,14 @@ def there():
 
 
 def searches(rows):
-    """Scene, way and seconds of what was searched by ways for any shape, which alone are compared."""
+    """Seconds of what was searched by ways for any shape, which alone are compared, by scene and way."""
     every = means.longest(rows[rows["trail"].notna()])[list(KEPT[:3])].to_numpy()
-    return {tuple(each) for each in every if not WAYS[each[1]].spheres}
+    return {(scene, way): seconds for scene, way, seconds in every if not WAYS[way].spheres}
 
 
 def whole(wanted, other):
-    """Scenes of which every one of the wanted searches was made there."""
-    there = searches(other)
-    return {scene for scene, _, _ in wanted} - {scene for scene, _, _ in wanted - there}
+    """Scenes of which every one of the wanted searches was made there, in however many seconds."""
+    return {scene for scene, _ in wanted} - {scene for scene, _ in set(wanted) - set(searches(other))}
 
 
 def reached(df, other):
@@ -88,13 +87,13 @@ def reached(df, other):
 
 def fairer(df, other):
     """The same, both there: by the record's ways, and by those of `cases.second_cases`, too."""
-    wanted = searches(df) | {(case["scene"], case["way"], case["seconds"]) for case in second_cases()}
+    wanted = {*searches(df), *((case["scene"], case["way"]) for case in second_cases())}
     return _pairs(df, _without_more(df, other), other, whole(wanted, other))
 
 
 def _without_more(df, other):
     """Rows of ways that the record has on the same scene."""
-    known = {each[:2] for each in searches(df)}
+    known = searches(df)
     return other[[each in known for each in zip(other["scene"], other["way"], strict=True)]]
 
 
@@ -150,10 +149,18 @@ def on_a_second_machine(df):
     out = [scene for scene in means.scenes_of(df) if scene not in scenes]
     lacking = f" (of {', '.join(out)} rows are missing or disturbed)" if out else ""
     return (
-        f"The searches on {len(scenes)} scenes were made once more on a second machine, with the same seconds, by "
+        f"The searches on {len(scenes)} scenes were made once more on a second machine, with {_seconds(df, other)}, by "
         f"commits {', '.join(sorted(set(other['commit'])))}{lacking}. "
         f"There the same accuracy costs {slower} times as much, in the median. {_kept(pairs)} {_moved(pairs, ways)}"
     )
+
+
+def _seconds(df, other):
+    """Whether searches on both machines were given as much."""
+    here, elsewhere = searches(df), searches(other)
+    both = here.keys() & elsewhere.keys()
+    unlike = sum(here[each] != elsewhere[each] for each in both)
+    return f"the same seconds but for {unlike} of {len(both)}" if unlike else "the same seconds"
 
 
 def _kept(pairs, how="here and there"):

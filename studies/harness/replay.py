@@ -22,6 +22,8 @@ from studies.harness.tolerance import moved
 
 # Words of a row that wants a program which is not here.
 ABSENT = re.compile(r"not installed|no mpiexec here|no Python (here has|with) ")
+# And of one that took more memory than there was, beside another.
+KILLED = "process killed by SIGKILL"
 # Studies that are named.
 MOST = 3
 # Rows that are made side by side: their values count, not their costs.
@@ -89,8 +91,9 @@ def stamped(stored, row, wrong):
 
 
 def absent(row):
-    """Whether a row could not be made for want of a program that is not ours: that says nothing of the stored one."""
-    return row["status"] == "unsupported" and bool(ABSENT.search(row["note"]))
+    """Whether a row could not be made for want of somebody's program, or of memory: that says nothing of the stored."""
+    missing = row["status"] == "unsupported" and bool(ABSENT.search(row["note"]))
+    return missing or (row["status"] == "failed" and row["note"].startswith(KILLED))
 
 
 def moved_in_words(wrong):

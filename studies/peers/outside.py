@@ -37,16 +37,17 @@ class Found(NamedTuple):
 
 
 def ran(command, *, folder=None, stdin="", limit=LIMIT, environment=None) -> tuple[str, dict]:
-    """Run a program to its end."""
+    """Run a program to its end, in an empty folder if it is given none: some leave logs where they are started."""
     start = time.perf_counter()
     with (
+        tempfile.TemporaryDirectory() as empty,
         tempfile.TemporaryFile("w+") as said,
         tempfile.TemporaryFile("w+") as complained,
         tempfile.NamedTemporaryFile("r") as used,
     ):
         child = subprocess.Popen(
             [sys.executable, "-S", "-E", "-c", BETWEEN, used.name, *map(str, command)],
-            cwd=folder,
+            cwd=folder or empty,
             stdin=subprocess.PIPE,
             stdout=said,
             stderr=complained,

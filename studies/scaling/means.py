@@ -1,4 +1,4 @@
-"""What is made of the rows of scaling: exponents, efficiencies, and what a larger cell would take."""
+"""What is made of the rows of scaling: exponents and errors."""
 
 import math
 
@@ -14,7 +14,6 @@ LEAST = 0.02
 # Rows of so many inclusions or elements and more are fitted: below, what does not grow weighs.
 FROM = {"number": 100, "unknowns": 50_000}
 MANY = 400_000
-BILLION = 1e9
 
 
 def of_stages(df):
@@ -53,22 +52,6 @@ def _slope(sizes, seconds):
     return float(found[0]), float(np.sqrt(covariance[0, 0]))
 
 
-def efficiencies(df):
-    """Wall time with one thread over that with n, divided by n, of every stage."""
-    import pandas as pd
-
-    rows = []
-    df = of_stages(pick(df[df["status"] == "ok"], part="elements"))
-    df = df.assign(resolution=df["particles"].fillna(df["voxels"]) if "voxels" in df else df["particles"])
-    for (name, resolution, stage), group in df.groupby(["name", "resolution", "stage"], sort=False):
-        one, most = group[group["cores"] == 1], group[group["cores"] == group["cores"].max()]
-        if len(one) and most["cores"].iloc[0] > 1 and one["wall"].iloc[0] >= LEAST:
-            gained = one["wall"].iloc[0] / most["wall"].iloc[0] / most["cores"].iloc[0]
-            rows.append({"name": name, "resolution": resolution, "stage": stage} | {"wall": one["wall"].iloc[0]})
-            rows[-1]["efficiency"] = gained
-    return pd.DataFrame(rows, columns=["name", "resolution", "stage", "wall", "efficiency"])
-
-
 def errors(df):
     """The rows with their error against the multipoles' conductivity of the same spheres, %, where that is known."""
     solved = pick(df[df["status"] == "ok"], name="multipole")
@@ -85,27 +68,6 @@ def _spheres(df):
     drawn = zip(df["number"], df["kind"], df["fraction"], strict=True)
     parts = df["part"] if "part" in df else [None] * len(df)
     return ["cell" if part == "elements" else one for part, one in zip(parts, drawn, strict=True)]
-
-
-def billion(df):
-    """What 1e9 unknowns would take by the costs of the largest row and the exponents of its method."""
-    parts = pick(df[df["status"] == "ok"], part="elements")
-    exponents = fitted(parts, "unknowns")
-    lines = []
-    for name in ("dem", "fft"):
-        rows = pick(parts, name=name).sort_values("unknowns")
-        power = pick(exponents, name=name, stage="all")
-        if len(rows) and len(power):
-            last = rows.iloc[-1]
-            more = BILLION / last["unknowns"]
-            lines.append(
-                {"name": name, "unknowns": BILLION}
-                | {"hours": last["cpu_s"] * more ** max(1.0, float(power["exponent"].iloc[0])) / 3600}
-                | {"within": more ** float(power["doubt"].iloc[0]), "doubt": float(power["doubt"].iloc[0])}
-                | {"tib": last["peak_mib"] * more / 2**20, "from": last["unknowns"]}
-                | {"exponent": float(power["exponent"].iloc[0])}
-            )
-    return lines
 
 
 def on_ranks(df):

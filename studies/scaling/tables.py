@@ -3,7 +3,7 @@
 from demheat import referee
 from studies.harness.figures import LOOK
 from studies.harness.pick import pick
-from studies.scaling.means import STAGES, billion, efficiencies, errors, fitted
+from studies.scaling.means import STAGES, errors, fitted
 
 # Characters of a note on the page; the rows' file has them all.
 NOTE = 100
@@ -96,12 +96,3 @@ def _fits(df):
         for _, fit in fitted(pick(df, part=part), by).iterrows():
             text = f"CPU time ~ {by}^({fit['exponent']:.2f} +- {fit['doubt']:.2f}), {fit['rows']:.0f} rows"
             yield {"what": f"fit, {part}", "method": LOOK[fit["name"]][0], "of": fit["stage"], "note": text}
-    for _, row in efficiencies(df).iterrows():
-        text = f"efficiency of two threads {row['efficiency']:.2f}"
-        scene = f"{row['stage']}, {row['resolution']:.0f}"
-        yield {"what": "threads", "method": LOOK[row["name"]][0], "of": scene, "wall, s": row["wall"], "note": text}
-    for row in billion(df):
-        text = f"from {row['from']:.3g} unknowns with exponent {max(1.0, row['exponent']):.2f} +- {row['doubt']:.2f}"
-        text += f": CPU time within a factor of {row['within']:.2f}"
-        line = {"what": "1e9, extrapolated", "method": LOOK[row["name"]][0], "unknowns": row["unknowns"]}
-        yield line | {"CPU, s": 3600 * row["hours"], "GiB": 1024 * row["tib"], "note": text}

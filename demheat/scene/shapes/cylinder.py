@@ -128,12 +128,10 @@ class Cylinder(Solid):
         """Volume of the part in a box, m3; see `Shape.volume_in`."""
         if periodic and self.length is None:
             return math.pi * self.radius**2 * size[int(np.argmax(np.abs(self.axis)))]
-        through = (
-            None if periodic else next((axis for axis in np.flatnonzero(self.axis) if self._passes(axis, size)), None)
-        )
-        if through is None:
+        through = [] if periodic else [axis for axis in np.flatnonzero(self.axis) if self._passes(axis, size)]
+        if not through:
             return super().volume_in(size, periodic=periodic)
-        return math.pi * self.radius**2 * size[through] / abs(self.axis[through])
+        return math.pi * self.radius**2 * size[through[0]] / abs(self.axis[through[0]])
 
     def _passes(self, axis, size):
         """Whether it goes through both walls of an axis, with its ends beyond them, and meets no other."""

@@ -167,6 +167,21 @@ def test_a_row_that_cannot_be_made_again_stays(old, capsys):
     assert old.rows()["name=plain,x=1.5"]["square"] == "9.0"
 
 
+def test_a_row_whose_process_was_killed_says_nothing(old, monkeypatch, capsys):
+    """By the system, for want of memory: the stored row has neither moved nor come back."""
+
+    def ended(how):
+        monkeypatch.setattr(runner, "compute_row", lambda study, case, warm: runner.failed(study, case, how))
+        ran(old, "replay", "--all")
+
+    before = old.rows()
+    ended("process killed by SIGKILL; nothing on its output")
+    assert old.rows() == before
+    assert "not here, process killed by SIGKILL" in capsys.readouterr().out
+    ended("process killed by SIGSEGV; nothing on its output")
+    assert all(row["moved_commit"] for row in old.rows().values())
+
+
 def test_new_values_lose_what_was_said_of_the_old_ones(old):
     store.write_rows(old.path, [row | {"replayed_commit": "1", "borne_commit": "1"} for row in old.rows().values()])
     old.write(CASES, **{"x * x": "x * x + 1"})
