@@ -9,8 +9,10 @@ along a board of contrast 1000), and twice as many voxels change that by a tenth
 
 The edge of a box or the rim of a cylinder alone has a power from 2/3 on, so that errors of second order fall with the
 power 4/3 at contrasts far from 1. An inclined plane makes wedges with a wall and its image, with powers from 1/2 on,
-and so does a cylinder that goes through a wall at an angle.
+and so does a cylinder that goes through a wall at an angle, and what is round that a wall cuts off its middle.
 """
+
+from functools import lru_cache
 
 import numpy as np
 
@@ -22,6 +24,8 @@ SLOWEST, SMOOTH = 0.5, 2.0
 MEETS = 1e-9
 # Of angles that are told apart, in radians: they move powers by no more than the steps in which these are tried.
 DIGITS = 3
+# The same of wedges at walls, of which there are as many as cut balls: powers move by a hundredth at most.
+ALIKE = 2
 # Powers that are tried, and least conductivity over the largest at an edge.
 TRIED, LEAST = np.arange(1, 2001) / 2000, 1e-12
 
@@ -29,7 +33,7 @@ TRIED, LEAST = np.arange(1, 2001) / 2000, 1e-12
 def edge_order(scene) -> float:
     """The power of their size with which errors of elements fall beside the worst edge of the scene, at most 2.
 
-    Edges are those that shapes tell, and where inclined planes and cylinders go through walls.
+    Edges are those that shapes tell, and where planes, cylinders, spheres and ellipsoids go through walls at an angle.
     """
     if scene.anisotropic:
         return SMOOTH
@@ -67,11 +71,19 @@ def _leans(part, scene):
 
 def _of_walls(scene, parts, k):
     """Powers where what leans meets walls, which make wedges of it, at an angle of its own and at its supplement."""
-    for part in parts:
-        # Walls are mirrors: the wedge of an angle is one of twice that.
-        for wedge in 2 * np.arccos(_leans(part, scene)):
-            angles = np.array([wedge, 2 * np.pi - wedge])
-            yield from (power([part.material.mean_conductivity, k[0]], each) for each in (angles, angles[::-1]))
+    # Walls are mirrors: the wedge of an angle is one of twice that.
+    found = {
+        (part.material.mean_conductivity, wedge)
+        for part in parts
+        for wedge in (2 * np.arccos(_leans(part, scene))).round(ALIKE).tolist()
+    }
+    return [_of_wedge(own, float(k[0]), wedge) for own, wedge in found]
+
+
+@lru_cache(maxsize=1024)
+def _of_wedge(own, around, wedge):
+    angles = np.array([wedge, 2 * np.pi - wedge])
+    return min(power([own, around], each) for each in (angles, angles[::-1]))
 
 
 def power(conductivities, angles=(np.pi / 2,) * 4) -> float:

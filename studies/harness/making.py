@@ -3,6 +3,7 @@
 These are the study's own file or folder, what all studies have in common, and files or folders of other studies which
 any of these imports, in functions or by name included. Left out is what reads rows, by the convention in `runner`
 (`figure.py` and `tables.py`, but where a module loads them at once), and what of the harness no row's making executes.
+Of the engine, all of which may make a row, those rooms are left out that only a study which names them enters.
 """
 
 import ast
@@ -19,8 +20,11 @@ READERS = (
 )
 # As git has it.
 EXCEPT = ":(exclude)"
+# Rooms that no other enters, but the front, commands and sweeps, and how it has them named: laws of costs, and who asks
+# these, are fitted to rows of a study, and would make all others old.
+APART = {"demheat/cheapest": ("cheapest", "effective", "recommend", "sweep")}
 # A module that is named in words, to be loaded when it is asked for.
-NAMED = re.compile(r"studies(\.\w+)+")
+NAMED = re.compile(r"(studies|demheat)(\.\w+)+")
 
 
 @cache
@@ -33,9 +37,12 @@ def paths_of(root: Path, file: str) -> tuple[str, ...]:
     while seen != (homes, loaded):
         seen = homes, loaded
         files = {path for home in homes for path in _modules(home) if path.name not in READING or path in loaded}
-        homes = homes | {_home(top, name.split(".")[1]) for path in files - readers for name in _imported(path)[0]}
+        names = {name for path in files - readers for name in _imported(path)[0]}
+        homes = homes | {_home(top, name.split(".")[1]) for name in names if name.startswith("studies.")}
         loaded = loaded | {_file(root, name) for path in files - readers for name in _imported(path)[1]}
     out = readers | {path.parent / name for path in files for name in READING} - loaded
+    named = tuple(name.removeprefix("demheat.") for name in names if name.startswith("demheat."))
+    out |= {root / room for room, ways in APART.items() if not any(name.startswith(ways) for name in named)}
     made = sorted(path.relative_to(root).as_posix() for path in homes if path.exists())
     return (*made, *sorted(f"{EXCEPT}{path.relative_to(root).as_posix()}" for path in out))
 
@@ -55,7 +62,7 @@ def _file(root, name):
 
 @cache
 def _imported(path):
-    """Names below `studies` that a module imports, or has in words; and those that it imports outside of functions."""
+    """Names of ours that a module imports, or has in words; and those that it imports outside of functions."""
     tree = ast.parse(path.read_bytes())
     names = [name for node in ast.walk(tree) for name in _names(node)]
     at_once = [name for node in tree.body for name in _names(node)]
@@ -67,4 +74,6 @@ def _names(node):
         return [each.name for each in node.names]
     if isinstance(node, ast.ImportFrom):
         return [node.module or "", *(f"{node.module}.{each.name}" for each in node.names)]
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+        return [f"{node.value.id}.{node.attr}"]
     return [node.value] if isinstance(node, ast.Constant) and isinstance(node.value, str) else []

@@ -152,7 +152,8 @@ def _differences(paths):
         # Outside a repository the source itself must tell.
         homes = [ROOT / name for name in paths if not name.startswith(EXCEPT)]
         files = {path for home in homes for path in (home, *home.rglob("*.py")) if path.is_file()}
-        files -= {ROOT / name.removeprefix(EXCEPT) for name in paths}
+        out = [ROOT / name.removeprefix(EXCEPT) for name in paths if name.startswith(EXCEPT)]
+        files = {path for path in files if not any(path.is_relative_to(each) for each in out)}
         return b"".join(path.read_bytes() for path in sorted(files))
 
 

@@ -18,6 +18,8 @@ from demheat.scene.shapes.solid import Solid
 
 # Newton steps to the foot of a point, at most: found 5 to 15; each at least halves what is far, where few count.
 STEPS = 200
+# Points around a cut by a wall.
+AROUND = 48
 # Of a semi-axis: a point that lies in a plane of symmetry counts as this far off it, where its foot is one of two.
 OFF = 1e-13
 
@@ -127,6 +129,19 @@ class Ellipsoid(Solid):
             least, most = (least, b) if bound(a) < bound(b) else (a, most)
         return bool(bound(0.5 * (least + most)) <= 1 + 1e-12)
 
+    def leans(self, size: Sequence[float]) -> np.ndarray:
+        """How far it leans against the walls that cut it, at points all around the cuts; see `Shape.leans`."""
+        columns, found = self._columns(), np.zeros(3)
+        for axis, row in enumerate(columns):
+            half = np.linalg.norm(row)
+            away = (np.array([0.0, size[axis]]) - self.center[axis]) / half
+            for height in away[np.abs(away) < 1]:
+                # On the ball that it is stretched from.
+                circle = circle_of(row / half, height)
+                normals = circle / np.array(self.semi_axes) @ np.array(self.rotation).T
+                found[axis] = max(found[axis], np.max(np.abs(normals[:, axis]) / np.linalg.norm(normals, axis=1)))
+        return found
+
     @property
     def faces(self) -> list[Shape]:
         """Itself; see `Shape.faces`."""
@@ -179,6 +194,14 @@ class Ellipsoid(Solid):
         normal = foot / (a * a)
         length = np.linalg.norm(normal, axis=1)
         return unit * t * length, normal / length[:, None] @ np.array(self.rotation).T
+
+
+def circle_of(axis: np.ndarray, height: float) -> np.ndarray:
+    """Points on the unit ball at a height along an axis, (AROUND, 3) float array."""
+    one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    one /= np.linalg.norm(one)
+    turns = 2 * np.pi * np.arange(AROUND)[:, None] / AROUND
+    return height * axis + math.sqrt(1 - height**2) * (np.cos(turns) * one + np.sin(turns) * np.cross(axis, one))
 
 
 def lengths(name: str, value) -> tuple[float, float, float]:

@@ -83,6 +83,11 @@ class Sphere(Shape):
         """Its diameter, m."""
         return 2 * self.radius
 
+    def leans(self, size: Sequence[float]) -> np.ndarray:
+        """How far it leans against the walls that cut it; see `Shape.leans`."""
+        away = np.abs([self.center, np.array(size) - self.center]) / self.radius
+        return np.where(away < 1, away, 0.0).max(axis=0)
+
     @property
     def faces(self) -> list[Shape]:
         """Itself; see `Shape.faces`."""

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from surface_bodies import brick, joined, ring
 
 from demheat import Material, Scene, solve
-from demheat.scene import Box, Cylinder, HalfSpace, Sphere, SurfaceMesh, Union
+from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Sphere, SurfaceMesh, Union
 from demheat.scene.edges import edge_order, power
 from demheat.scene.shapes import Shape
 from references import fft
@@ -61,6 +61,40 @@ def test_rims_and_inclined_planes_have_edges():
     tilted = HalfSpace((0.5,) * 3, (1, 1, 0), good)
     assert_allclose(edge_order(Scene(inclusions=[tilted], **cell, **walls)), 4 / 3, atol=2 / 1000)
     assert edge_order(Scene(inclusions=[HalfSpace((0.5,) * 3, (0, 0, 1), good)], **cell, **walls)) == 2.0
+
+
+@pytest.mark.parametrize("contrast", [20.0, 0.05])
+def test_what_is_round_has_an_edge_where_a_wall_cuts_it_off_its_middle(contrast):
+    """A ball at .6 of its radius from a wall meets it at arccos(.6), whichever side its middle is on."""
+
+    def order(shape, **load):
+        return edge_order(Scene((1.0, 1.0, 1.0), Material(1.0), [shape], **(load or {"walls": {"x-": 0.0, "x+": 1.0}})))
+
+    good, angle = Material(contrast), 2 * math.acos(0.6)
+    wedges = ([angle, 2 * np.pi - angle], [2 * np.pi - angle, angle])
+    exact = 2 * min(power([contrast, 1.0], each) for each in wedges)
+    assert exact < 1.8
+    for place in (0.18, -0.18, 1.18):
+        # Angles are told apart by a hundredth of a radian.
+        assert_allclose(order(Sphere((place, 0.5, 0.5), 0.3, good)), exact, atol=0.02)
+    assert order(Sphere((0.0, 0.5, 0.5), 0.3, good)) == order(Sphere((0.31, 0.5, 0.5), 0.3, good)) == 2.0
+    assert order(Sphere((0.18, 0.5, 0.5), 0.3, good), gradient=(1, 0, 0)) == 2.0
+
+
+def test_an_ellipsoid_leans_as_far_as_its_normals():
+    """Against those of the walls, at points of its surface on them: of a thousand, by distances."""
+    body = Ellipsoid((0.1, 0.5, 0.9), (0.35, 0.2, 0.25), Material(5.0), rotation=(0.2, 0.4, 0.7))
+    seen, span = np.zeros(3), np.linspace(0.0, 1.0, 1001)
+    for axis, at in ((0, 0.0), (2, 1.0)):
+        points = np.stack(np.meshgrid(span, span, indexing="ij"), axis=-1).reshape(-1, 2)
+        points = np.insert(points, axis, at, axis=1)
+        on = points[np.abs(body.distance(points)) < 5e-4]
+        seen[axis] = np.abs(body.normal(on)[:, axis]).max()
+    # Points lie half of a step off.
+    assert_allclose(body.leans((1.0, 1.0, 1.0)), seen, atol=4e-3)
+    ball = Sphere((0.1, 0.5, 0.9), 0.2, Material(5.0))
+    alike = Ellipsoid(ball.center, (0.2,) * 3, ball.material, rotation=(0.3, 0.2, 0.1))
+    assert_allclose(alike.leans((1.0, 1.0, 1.0)), ball.leans((1.0, 1.0, 1.0)), atol=1e-12)
 
 
 @pytest.mark.parametrize("contrast", [1e9, 10.0, 0.0])

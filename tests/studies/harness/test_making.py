@@ -7,9 +7,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from imported import MODULES, below, imports_of
 
 from studies.__main__ import study_names
 from studies.harness import making, runner
+from studies.harness.making import APART
 from studies.harness.provenance import ROOT, row_environment
 from studies.harness.store import case_key
 
@@ -37,14 +39,13 @@ sys.exit(ended if sys.argv[1:] else 0)
 
 
 def ran(*words):
-    """Files of our studies of which functions ran."""
+    """Files of our studies, and of rooms that are left out, of which functions ran."""
     environment = row_environment(1) | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
     done = subprocess.run(
         [sys.executable, "-c", TRACED, *words], cwd=ROOT, env=environment, capture_output=True, text=True, check=True
     )
-    return {
-        Path(each) for each in json.loads(done.stdout.splitlines()[-1]) if Path(each).is_relative_to(ROOT / "studies")
-    }
+    files, packages = map(Path, json.loads(done.stdout.splitlines()[-1])), [ROOT / each for each in ("studies", *APART)]
+    return {file for file in files if any(file.is_relative_to(each) for each in packages)}
 
 
 def split(file):
@@ -60,7 +61,7 @@ def test_what_is_left_out_makes_no_row(name, alone):
     case = next(case for case in study.CASES if study.QUICK(case))
     files, (made, out) = ran("row", name, case_key(case), *alone), split(study.__file__)
     assert {ROOT / "studies" / "harness" / "runner.py", Path(study.__file__)} <= files
-    assert files & out == set()
+    assert not any(file.is_relative_to(each) for file in files for each in out)
     # The command line hands words on.
     others = {file for file in files if not any(file.is_relative_to(each) for each in made)}
     assert others == {ROOT / "studies" / "__main__.py"}
@@ -72,6 +73,22 @@ def test_nothing_of_it_runs_when_studies_are_loaded():
     for name in study_names():
         _, out = split(runner.load(name).__file__)
         assert files & {path for path in out if path.parent.name == "harness"} == set()
+
+
+def test_rooms_that_are_left_out_are_entered_by_name_alone():
+    """By the front's names, by commands and by sweeps: a study that has none of these names has no row of theirs."""
+    names = {name for name in MODULES if not name.startswith("studies.")}
+    inside = {name for name in names if below(name, "demheat.cheapest")}
+    assert set(APART) == {"demheat/cheapest"} and inside
+    enter = {name for name in names - inside if any(below(each, "demheat.cheapest") for each in imports_of(name))}
+    assert enter and all(
+        name in ("demheat", "benchmark") or any(below(name, room) for room in ("demheat.sweeps", "demheat.terminal"))
+        for name in enter
+    ), enter
+    named = {
+        name for name in study_names() if ROOT / "demheat" / "cheapest" not in split(runner.load(name).__file__)[1]
+    }
+    assert named == {"estimates", "frontier"}
 
 
 def test_readers_are_there():
