@@ -24,7 +24,7 @@ SLOWEST, SMOOTH = 0.5, 2.0
 MEETS = 1e-9
 # Of angles that are told apart, in radians: they move powers by no more than the steps in which these are tried.
 DIGITS = 3
-# The same of wedges at walls, of which there are as many as cut balls: powers move by a hundredth at most.
+# The same of wedges at walls, of which there are as many as cut balls: powers move by .025 at most, near a cusp.
 ALIKE = 2
 # Powers that are tried, and least conductivity over the largest at an edge.
 TRIED, LEAST = np.arange(1, 2001) / 2000, 1e-12

@@ -137,7 +137,7 @@ class Ellipsoid(Solid):
             away = (np.array([0.0, size[axis]]) - self.center[axis]) / half
             for height in away[np.abs(away) < 1]:
                 # On the ball that it is stretched from.
-                circle = circle_of(row / half, height)
+                circle = _circle(row / half, height)
                 normals = circle / np.array(self.semi_axes) @ np.array(self.rotation).T
                 found[axis] = max(found[axis], np.max(np.abs(normals[:, axis]) / np.linalg.norm(normals, axis=1)))
         return found
@@ -196,7 +196,7 @@ class Ellipsoid(Solid):
         return unit * t * length, normal / length[:, None] @ np.array(self.rotation).T
 
 
-def circle_of(axis: np.ndarray, height: float) -> np.ndarray:
+def _circle(axis: np.ndarray, height: float) -> np.ndarray:
     """Points on the unit ball at a height along an axis, (AROUND, 3) float array."""
     one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     one /= np.linalg.norm(one)
