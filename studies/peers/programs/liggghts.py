@@ -43,7 +43,9 @@ def missing() -> str | None:
 @cache
 def version() -> str:
     """As it says of itself."""
-    told = subprocess.run(["liggghts", "-h"], capture_output=True, text=True).stdout
+    # It leaves a log where it is started.
+    with tempfile.TemporaryDirectory() as folder:
+        told = subprocess.run(["liggghts", "-h"], capture_output=True, text=True, cwd=folder).stdout
     return next((word for word in told.split() if word[0].isdigit()), "").rstrip(",")
 
 
