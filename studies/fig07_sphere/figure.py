@@ -32,7 +32,7 @@ def plot(df):
             ylabel="error of the centre at 10 s, K", title="The paper's network: packings, walls, calibrations"
         )
         axes[0, 2].set_xticks([])
-        axes[1, 2].set_axis_off()
+        axes[1, 2].remove()
     return figure
 
 

@@ -152,6 +152,14 @@ def test_who_wins_on_a_second_machine():
     assert second.whole(second.searches(ROWS), others) == {"third", "half", "unions", "gyroid"}
 
 
+def test_searches_of_other_seconds_are_compared_and_counted():
+    longer = SLOWER.assign(seconds=[55.0, *SLOWER["seconds"][1:]])
+    assert second.compared(second.reached(ROWS, longer)).keys() == second.compared(second.reached(ROWS, SLOWER)).keys()
+    assert second._seconds(ROWS, SLOWER) == "the same seconds"
+    both = len(second.searches(ROWS).keys() & second.searches(SLOWER).keys())
+    assert second._seconds(ROWS, longer) == f"the same seconds but for 1 of {both}"
+
+
 def test_ways_that_were_one_methods_alone(monkeypatch):
     """What the record does not have on a scene counts in the second column alone, and must be there for all."""
     more = [{"scene": scene, "way": "dem-loose", "seconds": 22.0} for scene in ("third", "half")]
