@@ -1,15 +1,18 @@
-"""The searches on a second machine: who wins there, and who if no way is the FFT's alone.
-
-    python -m studies.frontier.second make OUT
-
-searches by the ways that the record has on few scenes or none (`cases.second_cases`) beside rows that
-`python -m studies run frontier --out OUT --force` made there, and
+"""The searches on another machine: who wins there, and who if no way is the FFT's alone.
 
     python -m studies.frontier.second keep OUT
 
-keeps of all of them what they reach, and at what cost, in `second.csv` beside this file, with what it has already of
-other scenes. A scene of which a way was
-disturbed there, or is missing, is left out whole.
+keeps of rows that `python -m studies run frontier --out OUT --force` made on another machine what they reach, and at
+what cost, in `second.csv` beside this file, with what it has already of other scenes;
+
+    python -m studies.frontier.second make OUT
+
+searches by the ways that the record has on few scenes or none (`cases.second_cases`) beside such rows, and
+
+    python -m studies.frontier.second more OUT
+
+keeps of all of them the same in `more_ways.csv`. A scene of which a way was disturbed there, or is missing, is left
+out whole.
 """
 
 import csv
@@ -25,6 +28,7 @@ from studies.frontier.cases import second_cases
 from studies.harness.sound import NOISY
 
 FILE = Path(__file__).with_name("second.csv")
+MORE = Path(__file__).with_name("more_ways.csv")
 KEPT = ("scene", "way", "seconds", "conductivity", "extrapolated", "trail")
 KEPT += ("noise", "triad_gbs", "commit", "when", "machine", "host")
 NAMES = {"dem": "the DEM", "fem": "finite elements", "fft": "the FFT"}
@@ -41,12 +45,12 @@ def make(out):
     return runner.run_study("frontier", out)
 
 
-def keep(out):
+def keep(out, path):
     """Write what is kept of rows that nobody disturbed, beside those of other scenes; their number."""
     rows = [row for row in _rows(Path(out) / "frontier.csv") if float(row["noise"]) <= NOISY]
     again = {row["scene"] for row in rows}
-    rows = [*(row for row in _rows(FILE) if row["scene"] not in again), *rows]
-    with replaced(FILE) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+    rows = [*(row for row in _rows(path) if row["scene"] not in again), *rows]
+    with replaced(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         table = csv.DictWriter(file, KEPT, extrasaction="ignore", lineterminator="\n")
         table.writeheader()
         table.writerows(rows)
@@ -62,11 +66,11 @@ def _rows(path):
         return [row for row in csv.DictReader(file) if row.get("trail")]
 
 
-def there():
-    """Rows of the second machine; None without them."""
+def there(path):
+    """Rows of a file; None without it."""
     import pandas as pd
 
-    return pd.read_csv(FILE) if FILE.exists() else None
+    return pd.read_csv(path) if path.exists() else None
 
 
 def searches(rows):
@@ -86,7 +90,7 @@ def reached(df, other):
 
 
 def fairer(df, other):
-    """The same, both there: by the record's ways, and by those of `cases.second_cases`, too."""
+    """The same, both on one machine: by the record's ways, and by those of `cases.second_cases`, too."""
     wanted = {*searches(df), *((case["scene"], case["way"]) for case in second_cases())}
     return _pairs(df, _without_more(df, other), other, whole(wanted, other))
 
@@ -139,7 +143,7 @@ def factors(ways):
 
 def on_a_second_machine(df):
     """Whether the same methods win there."""
-    other = there()
+    other = there(FILE)
     if other is None:
         return ""
     ways = reached(df, other)
@@ -149,10 +153,16 @@ def on_a_second_machine(df):
     out = [scene for scene in means.scenes_of(df) if scene not in scenes]
     lacking = f" (of {', '.join(out)} rows are missing or disturbed)" if out else ""
     return (
-        f"The searches on {len(scenes)} scenes were made once more on a second machine, with {_seconds(df, other)}, by "
-        f"commits {', '.join(sorted(set(other['commit'])))}{lacking}. "
+        f"The searches on {len(scenes)} scenes were made on another machine as well ({_where(other)}), with "
+        f"{_seconds(df, other)}{lacking}. "
         f"There the same accuracy costs {slower} times as much, in the median. {_kept(pairs)} {_moved(pairs, ways)}"
     )
+
+
+def _where(rows):
+    """Which machine made rows, and by which commits."""
+    machines, commits = (", ".join(sorted(set(rows[name]))) for name in ("machine", "commit"))
+    return f"{machines}; commits {commits}"
 
 
 def _seconds(df, other):
@@ -196,7 +206,7 @@ def _scenes(ways):
 
 def with_more_ways(df):
     """Whether the same methods win where no way is the FFT's alone."""
-    other = there()
+    other = there(MORE)
     ways = {} if other is None else fairer(df, other)
     if not ways:
         return ""
@@ -208,8 +218,9 @@ def with_more_ways(df):
     )
     return (
         f"A tolerance of 1e-3 is searched for in the record by the FFT alone of methods for any shape, and what the "
-        f"DEM is extrapolated to on few scenes. On the second machine the DEM and elements were given such a tolerance "
-        f"on {len(_scenes(ways))} scenes, and the DEM its extrapolation on all of these. "
+        f"DEM is extrapolated to on few scenes. In searches beside it, on one machine ({_where(other)}), the DEM and "
+        f"elements were given such a tolerance on {len(_scenes(ways))} scenes, and the DEM its extrapolation on all of "
+        f"these. "
         f"{_kept(pairs, 'without these ways and with them')} "
         f"Of {len(pairs)} pairs of scene and accuracy {len(moved)} have other winners or ties with them"
         f"{f': {told}' if told else ''}."
@@ -226,18 +237,19 @@ def claims(df):
     Limits were set before rows were compared; that a scene with gaps in its rows there is left out was chosen when
     those of the first had been.
     """
-    other = there()
-    if other is None or not means.searched(df):
+    if not means.searched(df):
         return
-    for ways, where in (
-        (reached(df, other), "on a second machine"),
-        (fairer(df, other), "where all have a loose tolerance and the DEM is extrapolated, on a second machine"),
+    for path, both, where in (
+        (FILE, reached, "on a second machine"),
+        (MORE, fairer, "where all have a loose tolerance and the DEM is extrapolated, on one machine"),
     ):
-        pairs = compared(ways)
+        other = there(path)
+        pairs = {} if other is None else compared(both(df, other))
         text = f"Pairs of scene and accuracy with no winner in common {where}, share"
         if pairs:
             yield text, len(others(pairs)) / len(pairs), 0.1
 
 
 if __name__ == "__main__":
-    print({"make": make, "keep": keep}[sys.argv[1]](sys.argv[2]))
+    command, folder = sys.argv[1:]
+    print(make(folder) if command == "make" else keep(folder, {"keep": FILE, "more": MORE}[command]))

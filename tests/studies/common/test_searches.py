@@ -260,10 +260,7 @@ def test_stored_rows_are_judged_as_their_trails_say(study, least):
             told = json.loads(row[quantity]) if isinstance(row.get(quantity), str) else {}
             for target, found in told.items():
                 place = cheapest(tried, quantity, float(target))
-                # Searches once took sizes that make the same elements for finer ones.
-                known = place is not None or _repeats(tried, quantity)
-                assert isinstance(found, list) <= known, (row["scene"], row["way"], quantity, target)
-                assert (place is not None) <= isinstance(found, list), (row["scene"], row["way"], quantity, target)
+                assert isinstance(found, list) is (place is not None), (row["scene"], row["way"], quantity, target)
                 if place is not None:
                     value, seconds, _, _, error, _, runs = found
                     # Of two that cost the same to four digits the row knows more.
@@ -272,12 +269,6 @@ def test_stored_rows_are_judged_as_their_trails_say(study, least):
                     assert (error, runs) == (point.errors[quantity], len(point.costs[quantity]))
                     # Both are rounded to four digits.
                     assert seconds == pytest.approx(point.cost(quantity), rel=1e-3)
-
-
-def _repeats(points, quantity):
-    """Whether there are walked values that are others over again."""
-    marks = [point.mark(quantity) for point in points if point.walked]
-    return len(set(marks)) < len(marks)
 
 
 def test_voxels_divide_well():

@@ -173,15 +173,15 @@ def test_ways_that_were_one_methods_alone(monkeypatch):
     assert second.families(second.compared(second.reached(ROWS, loose))["half", 0.1][1]) == {"fft"}
 
 
-def test_rows_that_others_disturbed_are_not_kept(tmp_path, monkeypatch):
-    monkeypatch.setattr(second, "FILE", tmp_path / "second.csv")
+def test_rows_that_others_disturbed_are_not_kept(tmp_path):
+    path = tmp_path / "second.csv"
     rows = [row("third", "dem", 0.1) | {"noise": noise, "commit": "abc"} for noise in (0.01, 0.5)]
     pd.DataFrame([*rows, row("third", "fem", None) | {"noise": 0.0, "trail": ""}]).to_csv(tmp_path / "frontier.csv")
-    assert second.keep(tmp_path) == 1
-    assert list(second.there()["noise"]) == [0.01]
+    assert second.keep(tmp_path, path) == 1
+    assert list(second.there(path)["noise"]) == [0.01]
     # Of other scenes what there is stays, of these it does not.
     rows = [row(scene, "dem", 0.1) | {"noise": 0.02, "commit": "abc"} for scene in ("half", "gyroid")]
     for there, noise in ((rows, [0.01, 0.02, 0.02]), (rows[:1], [0.01, 0.02, 0.02])):
         pd.DataFrame(there).to_csv(tmp_path / "frontier.csv")
-        assert second.keep(tmp_path) == len(noise)
-        assert list(second.there()["noise"]) == noise
+        assert second.keep(tmp_path, path) == len(noise)
+        assert list(second.there(path)["noise"]) == noise
