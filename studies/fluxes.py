@@ -8,7 +8,7 @@ fields of its own, and of Eyre and Milton's scheme, whose temperatures ring, not
 Costs are those of a quiet machine, or none are stored: `python -m studies run fluxes --out results --force`.
 """
 
-from studies.common.searches.scenes import MESHED, ONLY_SPHERES, SCENES
+from studies.common.searches.scenes import ONLY_SPHERES, SCENES
 from studies.common.searches.ways import WAYS
 
 # Of the steady scenes those whose fields nothing tells exactly.
@@ -16,6 +16,8 @@ UNKNOWN = ("ellipsoids", "square rod", "unions", "gyroid", "image")
 RULES = ("dem", "fem", "fem-p1", "fft", "fft-loose", "fft-laminate", "fft-links", "multipole")
 # Processor seconds of a search; of a scene that is named; of elements among many bodies.
 USUAL, BUDGET, MESHED_S = 15.0, {"1000 spheres": 50.0, "5000 spheres": 80.0, "laminate": 4.0, "thin shell": 10.0}, 60.0
+# Scenes with many bodies, around which elements begin where other methods end.
+MESHED = ("83 spheres", "polydisperse", "unequal, f = .5", "30 at 0.001", "resistance", "box of 1:1:4")
 # Where a rule says nothing, or nothing else than another (`frontier.cases`).
 LEFT_OUT = {
     "laminate": ("fft-laminate", "fft-links", "multipole"),

@@ -5,15 +5,15 @@ about one and a half times as much, halves between neighbours that a target lies
 in cost, and runs again, in turns, what decides. A value reaches a target if its error and those of all finer values
 that were tried, two steps at least, are within it, where sizes that make the same elements are one value; of those that
 do the one counts that costs least, run three times where the seconds last. Meshing, painting, packing and the coarser
-runs of an extrapolation count, and so does asking at points. Targets are 3 to .003 % of the conductivity. Fluxes and
-temperatures at points have a study of their own (`fluxes`); rows were searched for them, too, until that was there.
+runs of an extrapolation count. Targets are 3 to .003 % of the conductivity. Fluxes and temperatures at points have a
+study of their own (`fluxes`).
 Scenes are eleven, marked where constants of the DEM were found on them, and twelve that were held back: no constant and
 no law was fitted to them, though faults found on them were mended; three bodies that warm up, whose temperatures count;
 some more are there for the laws of error and cost alone, which `python -m studies.frontier.laws` fits to all but those
 twelve. What is true is known in closed form, by multipoles, or by two methods that close in on the same; a target is
 judged where that is known three times better. A search tries no finer value than its first three once half of its
-seconds (a column of the row) are spent, or where the next target would take over two minutes or 8 GiB; the rest is for
-halving and repeats.
+seconds (a column of the row) are spent, or where the next value would take over two minutes or 8 GiB; the rest is for
+halving and repeats. Nobody gives up before, though errors may have stopped to fall.
 
 Costs are those of a quiet machine, or none are stored: `python -m studies run frontier --out results --force`.
 """

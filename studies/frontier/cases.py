@@ -4,27 +4,30 @@ from studies.common.searches.in_time import IN_TIME
 from studies.common.searches.scenes import FOR_LAWS, HELD_BACK, ONLY_SPHERES, SCENES
 from studies.common.searches.ways import ASKED, ASKED_S, WAYS
 
-# Processor seconds of a search, of a scene that is named, else of any.
-USUAL, BUDGET = (
-    20.0,
-    {"1000 spheres": 110.0, "5000 spheres": 190.0, "gyroid": 60.0, "half": 30.0}
-    | {"laminate": 5.0, "image": 8.0, "thin shell": 12.0},
-)
+# Processor seconds of a search: on any scene, on one that is there for the laws alone, of a body that warms up.
+USUAL, SHORT, IN_TIME_S = 20.0, 8.0, 30.0
+# On scenes that take less, or more; of surfaces a few values tell laws too little.
+OTHERWISE = {
+    5.0: ("laminate",),
+    8.0: ("image",),
+    12.0: ("thin shell",),
+    30.0: ("half", "ellipsoids at 50", "joined at 0.1", "30 of 1 to 4"),
+    40.0: ("primitive at 20",),
+    60.0: ("gyroid",),
+    80.0: ("3000 spheres",),
+    110.0: ("1000 spheres",),
+    190.0: ("5000 spheres",),
+}
 # Of elements where one mesh takes long: as much as three of them, since fewer tell nothing.
 MESHED = {
-    **{"83 spheres": 120.0, "unequal, f = .5": 100.0, "ellipsoids": 100.0, "polydisperse": 55.0, "unions": 55.0},
-    **{"30 at 0.001": 60.0, "resistance": 55.0, "box of 1:1:4": 60.0, "fibre at 50": 25.0, "infinite": 25.0},
-    **{"ellipsoids at 50": 60.0, "joined at 0.1": 45.0, "30 of 1 to 4": 60.0, "10 pores": 40.0, "box of 1:3:1": 45.0},
+    25.0: ("fibre at 50", "infinite"),
+    40.0: ("half at 100", "10 pores"),
+    45.0: ("joined at 0.1", "box of 1:3:1"),
+    55.0: ("polydisperse", "unions", "resistance"),
+    60.0: ("30 at 0.001", "box of 1:1:4", "ellipsoids at 50", "30 of 1 to 4"),
+    100.0: ("unequal, f = .5", "ellipsoids"),
+    120.0: ("83 spheres",),
 }
-# Of a body that warms up.
-IN_TIME_S = 30.0
-# Of a scene that is there for the laws alone.
-SHORT, LONGER = (
-    8.0,
-    # Of surfaces that are searched for a few values tell too little.
-    {"3000 spheres": 80.0, "primitive at 20": 40.0, "ellipsoids at 50": 30.0, "joined at 0.1": 30.0}
-    | {"30 of 1 to 4": 30.0},
-)
 # Ways that laws are fitted to.
 LAWS = ("dem", "fem", "fft-loose", "multipole-loose")
 # Of a quick run, beside the others.
@@ -82,10 +85,15 @@ def second_cases():
 
 
 def _seconds(scene, way):
-    usual = BUDGET.get(scene, LONGER.get(scene, SHORT) if scene in FOR_LAWS else USUAL)
+    usual = _of(OTHERWISE, scene, SHORT if scene in FOR_LAWS else USUAL)
     if WAYS[way].knob == "size" and not WAYS[way].peer:
-        usual = MESHED.get(scene, usual)
+        usual = _of(MESHED, scene, usual)
     return usual * (LESS if way in RULES else 1.0)
+
+
+def _of(seconds, scene, usual):
+    """Seconds of a scene where it is named, else the usual ones."""
+    return next((each for each, scenes in seconds.items() if scene in scenes), usual)
 
 
 def _fits(way, how, scene):

@@ -22,6 +22,7 @@ from pathlib import Path
 
 from demheat.runtime.paths import replaced
 from studies.common.searches import means
+from studies.common.searches.scenes import SCENES
 from studies.common.searches.search import TARGETS
 from studies.common.searches.ways import WAYS
 from studies.frontier.cases import second_cases
@@ -135,9 +136,9 @@ def factors(ways):
     """By method how many times the cost is there, for the same accuracy, in the median over scenes and accuracies."""
     found: dict = {}
     for both in ways.values():
-        here, elsewhere = ({each.way: each for each in some} for some in both)
-        for way in here.keys() & elsewhere.keys():
-            found.setdefault(here[way].family, []).append(elsewhere[way].cpu_s / here[way].cpu_s)
+        here, elsewhere = ({(each.way, each.extrapolated): each for each in some} for some in both)
+        for key in here.keys() & elsewhere.keys():
+            found.setdefault(here[key].family, []).append(elsewhere[key].cpu_s / here[key].cpu_s)
     return {name: statistics.median(each) for name, each in found.items()}
 
 
@@ -168,7 +169,7 @@ def _where(rows):
 def _seconds(df, other):
     """Whether searches on both machines were given as much."""
     here, elsewhere = searches(df), searches(other)
-    both = here.keys() & elsewhere.keys()
+    both = {each for each in here.keys() & elsewhere.keys() if each[0] in SCENES}
     unlike = sum(here[each] != elsewhere[each] for each in both)
     return f"the same seconds but for {unlike} of {len(both)}" if unlike else "the same seconds"
 

@@ -2,8 +2,9 @@
 
 These are the study's own file or folder, what all studies have in common, and files or folders of other studies which
 any of these imports, in functions or by name included. Left out is what reads rows, by the convention in `runner`
-(`figure.py` and `tables.py`, but where a module loads them at once), and what of the harness no row's making executes.
-Of the engine, all of which may make a row, those rooms are left out that only a study which names them enters.
+(`figure.py` and `tables.py`, but where a module loads them at once), and what of the harness no row's making executes
+(or for its stamp alone: this file). Of the engine, all of which may make a row, and of what all studies have in common
+those rooms are left out that only a study which names them enters.
 """
 
 import ast
@@ -15,7 +16,7 @@ EVERYBODYS = ("common", "harness", "paper")
 READING = ("figure.py", "tables.py")
 # Of the harness; a test traces a row's making.
 READERS = (
-    *("accept", "claims", "explained", "figures", "groups", "html", "lasting"),
+    *("making", "accept", "claims", "explained", "figures", "groups", "html", "lasting"),
     *("pictures", "readme", "replay", "report", "table", "tolerance"),
 )
 # As git has it.
@@ -23,6 +24,8 @@ EXCEPT = ":(exclude)"
 # Rooms that no other enters, but the front, commands and sweeps, and how it has them named: laws of costs, and who asks
 # these, are fitted to rows of a study, and would make all others old.
 APART = {"demheat/cheapest": ("cheapest", "effective", "recommend", "sweep")}
+# Of what all studies have in common: searches, which two of them make.
+SHARED = ("common/searches",)
 # A module that is named in words, to be loaded when it is asked for.
 NAMED = re.compile(r"(studies|demheat)(\.\w+)+")
 
@@ -36,15 +39,23 @@ def paths_of(root: Path, file: str) -> tuple[str, ...]:
     readers = {top / "harness" / f"{name}.py" for name in READERS}
     while seen != (homes, loaded):
         seen = homes, loaded
+        closed = {top / room for room in SHARED} - homes
         files = {path for home in homes for path in _modules(home) if path.name not in READING or path in loaded}
+        files = {path for path in files if not closed.intersection(path.parents)}
         names = {name for path in files - readers for name in _imported(path)[0]}
         homes = homes | {_home(top, name.split(".")[1]) for name in names if name.startswith("studies.")}
+        homes = homes | {top / room for room in SHARED if any(_inside(name, room) for name in names)}
         loaded = loaded | {_file(root, name) for path in files - readers for name in _imported(path)[1]}
-    out = readers | {path.parent / name for path in files for name in READING} - loaded
+    out = readers | closed | {path.parent / name for path in files for name in READING} - loaded
     named = tuple(name.removeprefix("demheat.") for name in names if name.startswith("demheat."))
     out |= {root / room for room, ways in APART.items() if not any(name.startswith(ways) for name in named)}
     made = sorted(path.relative_to(root).as_posix() for path in homes if path.exists())
     return (*made, *sorted(f"{EXCEPT}{path.relative_to(root).as_posix()}" for path in out))
+
+
+def _inside(name, room):
+    """Whether a module's name is in a room."""
+    return f"{name}.".startswith(f"studies.{room.replace('/', '.')}.")
 
 
 def _home(top, name):

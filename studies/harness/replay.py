@@ -21,7 +21,7 @@ from studies.harness.store import add_rows, case_key, check_writable, read_rows
 from studies.harness.tolerance import moved
 
 # Words of a row that wants a program which is not here.
-ABSENT = re.compile(r"not installed|no mpiexec here|no Python (here has|with) ")
+ABSENT = re.compile(r"not installed|cannot be loaded|no mpiexec here|no Python (here has|with) ")
 # And of one that took more memory than there was, beside another.
 KILLED = "process killed by SIGKILL"
 # Studies that are named.

@@ -220,8 +220,6 @@ ONLY_SPHERES = (
     *("83 spheres", "1000 spheres", "unequal, f = .5", "30 at 0.001", "infinite", "resistance", "box of 1:1:4"),
     *("5000 spheres", "box of 1:3:1", "10 pores", "3000 spheres", "30 of 1 to 4"),
 )
-# Of scenes with many bodies, around which elements begin where other methods end.
-MESHED = ("83 spheres", "polydisperse", "unequal, f = .5", "30 at 0.001", "resistance", "box of 1:1:4")
 TITLES = STEADY_TITLES | {
     "ellipsoids": "8 ellipsoids",
     "fibre at 50": "fibre, f = .5, contrast 50",

@@ -140,14 +140,12 @@ def _next_cost(trail):
 
 
 def _sought(trail, judged):
-    """Whether a target is not reached yet that the next steps may reach."""
+    """Whether a target is not reached yet, though errors may have stopped to fall: that may be chance."""
     for quantity in QUANTITIES:
         for target in TARGETS:
             if not judged(quantity, target) or reached(trail.points, quantity, target) is not None:
                 continue
-            if not math.isfinite(trail.points[-1].error_of(quantity)) and len(trail.points) > 3:
-                continue
-            if foreseen(trail.points, quantity, target) <= MOST_S:
+            if math.isfinite(trail.points[-1].error_of(quantity)) or len(trail.points) <= 3:
                 return True
     return False
 

@@ -44,7 +44,7 @@ WAYS = {
     "dem": Way("DEM", "dem", "dem", {}, "particles", 250, 2000, own=True),
     # What is extrapolated from the same particles is mostly the same: by itself, and on few scenes.
     "dem-limit": Way("DEM", "dem", "dem", {}, "particles", 4000, 8000, extrapolates=True),
-    # As little as a conductivity asks for, as the FFT's by its own way; on a second machine alone (`frontier.second`).
+    # As little as a conductivity asks for, as the FFT's by its own way; beside the record (`frontier.second`).
     "dem-loose": Way("DEM, tolerance 1e-3", "dem", "dem", {"tolerance": 1e-3}, "particles", 250, 2000),
     # As printed by Haddad et al.: particles in packings, calibrated surfaces.
     "dem-paper": Way(
