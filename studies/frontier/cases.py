@@ -12,7 +12,7 @@ OTHERWISE = {
     8.0: ("image",),
     12.0: ("thin shell",),
     30.0: ("half", "ellipsoids at 50", "joined at 0.1", "30 of 1 to 4"),
-    40.0: ("primitive at 20",),
+    40.0: ("half at 100", "primitive at 20"),
     60.0: ("gyroid",),
     80.0: ("3000 spheres",),
     110.0: ("1000 spheres",),
@@ -21,7 +21,7 @@ OTHERWISE = {
 # Of elements where one mesh takes long: as much as three of them, since fewer tell nothing.
 MESHED = {
     25.0: ("fibre at 50", "infinite"),
-    40.0: ("half at 100", "10 pores"),
+    40.0: ("10 pores",),
     45.0: ("joined at 0.1", "box of 1:3:1"),
     55.0: ("polydisperse", "unions", "resistance"),
     60.0: ("30 at 0.001", "box of 1:1:4", "ellipsoids at 50", "30 of 1 to 4"),
