@@ -59,7 +59,7 @@ def solve(
         contacts of each particle (Terreros et al. 2013, section 4), whose volumes do not add up to that of the body.
     particles : int
         Number of particles before twins are added at interfaces; of conforming cells in a periodic box, which are cut
-        by tiles, met within 3 %.
+        by tiles, met within 3 % in cubes.
     seed : int
         Of the packing; how tiles are turned and shifted.
     solver : {"auto", "cg", "amg", "amg-single"}

@@ -305,9 +305,9 @@ def test_scenes_are_enough_and_none_is_named_twice():
     cases = list(all_cases())
     assert {case["scene"] for case in cases} == {*SCENES, *FOR_LAWS, *IN_TIME}
     assert not set(SCENES) & set(FOR_LAWS)
-    # Most searches end before their seconds do. The aim is an hour. On a Xeon it was missed by sixteen minutes, on this
-    # machine, slower by half and more, by three quarters of an hour: to start a process, to find what is true and to
-    # draw scenes are part of these seconds; how fast the machine is, is found beside them.
+    # The aim is an hour, and it is missed by half of one, on a machine half as fast by three quarters: searches spend
+    # their seconds on any. To start a process, to find what is true and to draw scenes are part of these; how fast the
+    # machine is, is found beside them.
     stored = Path(__file__).parents[3] / "results" / "frontier.csv"
     rows = pd.read_csv(stored, usecols=["made_s", "pace"])
     # Of a slower machine, seconds of that of the searches.
