@@ -47,8 +47,9 @@ REASONS = {
 FAILS = {
     "what `effective` took, factor between, largest": (
         "square rod to .1 %: three rounds, as beside edges intervals fall with the first power of the distance, which "
-        "no scene of the laws shows; pairs of balls to .1 % took a quarter of what was said, 40 spheres to .01 % three "
-        "times that: an interval of the FFT's and a cost of multipoles as far off as one in ten; others are within 3"
+        "no scene of the laws shows; pairs of balls to .1 % took a quarter of what was said, in one round as foreseen: "
+        "the FFT's law of costs says too much there; 40 unequal spheres cost multipoles two to three times what their "
+        "law says, at most degrees; others are within 3"
     ),
 }
 TIMEOUT = 900.0
